@@ -17,7 +17,7 @@ from app.report.header import WIDE
 from app.report.layout import Block
 from app.report.painter import PagePainter, elide, text_width, wrap
 from app.report.tables import heading
-from core.export.report_data import IterationCurve, Report, SectionCurves
+from core.export.report_data import IterationCurve, Pair, Report, SectionCurves
 from core.geometry.mesh import Floats
 
 LOWEST, HIGHEST = 52.0, 116.0
@@ -49,8 +49,8 @@ def curve_block(handout: ReportDocument, height: float) -> Block:
     names = [elide(each, "caption", room) for each, room in zip(where, (_SIDE, WIDE - right), strict=True)]
     marks = _bust_points(sheet)
     parts = [
-        (0.0, top, _section(side, marks, names[0], _SIDE, height - top, _from_bust_point())),
-        (right, top, _section(bust, [], names[1], WIDE - right, half - 2.0, _from_bust_point())),
+        (0.0, top, _section(side, marks, names[0], (_SIDE, height - top), _from_bust_point())),
+        (right, top, _section(bust, [], names[1], (WIDE - right, half - 2.0), _from_bust_point())),
         *_plots(sheet, right, top + half, wide, height - top - half),
     ]
     legend = _legend()
@@ -68,7 +68,7 @@ def lower_section_blocks(sheet: Report, width: float) -> Iterator[Block]:
     """Yield the levels of waist and hip, ``width`` [mm] wide, where the design has the lower trunk."""
     titles = {"waist": tr("Top view at waist level"), "hip": tr("Top view at hip level")}
     for at, cut in enumerate(sheet.lower_sections):
-        block = _section(cut, [], titles[cut.name], width, LEVEL, tr("grid {length}, origin at the middle"))
+        block = _section(cut, [], titles[cut.name], (width, LEVEL), tr("grid {length}, origin at the middle"))
         yield replace(block, gap=4.0 if at else 0.0)
 
 
@@ -97,15 +97,9 @@ def _bust_points(sheet: Report) -> list[tuple[float, float]]:
     return [side.bust_point, side.bust_point_after] if sheet.is_valid else []
 
 
-def _section(
-    cut: SectionCurves,
-    marks: Sequence[tuple[float, float]],
-    title: str,
-    width: float,
-    height: float,
-    origin: str,
-) -> Block:
-    """Return a cut on a grid, as large as it can be shown; ``origin`` says from where that is counted."""
+def _section(cut: SectionCurves, marks: Sequence[Pair], title: str, size: Pair, origin: str) -> Block:
+    """Return a cut on a grid, as large as its ``size`` [mm] allows; ``origin`` says where that begins."""
+    width, height = size
     box, zero = np.array(cut.box), np.array(cut.bust_point)
     room = np.array([width - _AXIS, height - 4.0 - _FOOT])
     scale = float((room / (box[1] - box[0])).min())

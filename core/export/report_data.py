@@ -186,22 +186,21 @@ def make_report(
 
     Raises Cancelled, and LineError if the turns ran away: they leave no body.
     """
-    stages, points, verdict = shown.stages, shown.control_points, shown.verdict
+    stages, points, verdict = shown.stages, shown.region_points, shown.verdict
     if verdict.motion == "diverging":
         raise divergence_error()
     progress("measuring", 0.1)
-    before, after = before_after(stages, *shown.region_points)
+    before, after = before_after(stages, *points)
     found, why = _sizes(before, heading)
     progress("pressing", 0.8)
     cuts, pressed = cut_list_of(shown), pressure_list_of(shown)
-    percent, error_ml = controlled_volume(shown)
     return Report(
         heading=heading,
         scan=stages.design.scan.name,
         state=verdict.display_state,
         settled=verdict.state == "settled",
-        lift=_lift(stages.rest_marks, stages.watch(points)) if verdict.is_valid else None,
-        volume=VolumeKept(stages.model.volume.rest_volume / 1000.0, error_ml, percent),
+        lift=_lift(stages.rest_marks, stages.watch(points[0])) if verdict.is_valid else None,
+        volume=VolumeKept(stages.model.volume.rest_volume / 1000.0, *reversed(controlled_volume(shown))),
         measures=tuple(measure_rows(before, after)),
         sizes=found,
         no_size=why,
@@ -209,14 +208,14 @@ def make_report(
         pressures=tuple(row for row in pressed.rows if not row.is_cup),
         cups=tuple(row for row in pressed.rows if row.is_cup),
         limits=pressed.as_data()["limits"],
-        sections=_sections(stages, points),
+        sections=_sections(stages, points[0]),
         turns=_turns(stages, records),
         doubts=tuple(collect_warnings(stages.body, stages.landmarks)),
         warnings=(*shape_warnings(shown), *immovable_lines(stages), *warnings(stages)),
         left_out=(*NOT_MODELLED, *LEFT_OUT),
         model=_model(stages),
         strain=verdict.strain,
-        lower_sections=_lower_sections(stages, shown.region_points),
+        lower_sections=_lower_sections(stages, points),
         assessment=assess_with(shown, cuts, pressed),
         versions={"busk": __version__, "python": platform.python_version(), "numpy": np.__version__},
     )
