@@ -56,7 +56,7 @@ def apply_lines(design: Design, lines: Sequence[Line], requests: Sequence[str]) 
 
 def apply_elastics(design: Design, requests: Sequence[str]) -> Design:
     """Return a design with elastics of active lines set by requests, LINE=ELASTIC each. Raises LineError."""
-    active = sorted(design.worn_lines())
+    active = sorted(design.all_active_lines())
     for request in requests:
         _, equals, elastic = (part.strip() for part in request.partition("="))
         names = _named(_name(request), active)

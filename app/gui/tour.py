@@ -225,8 +225,8 @@ class Tour(QObject):
         return TourStop(
             tr("Waist, hips and seat"),
             tr(
-                "The sample Whole trunk is in a bra and a girdle. Drag the handle of Waist: its length is "
-                "that of the whole band. Your own scan needs to reach to mid-thigh."
+                "The sample Whole trunk opens with a bra and a girdle. Drag the slider of Waist: its length "
+                "is that of the whole band. Your own scan must reach to mid-thigh."
             ),
             lambda: self._place_of(lines.rows.get("waist", lines)),
             sample=WHOLE_TRUNK,

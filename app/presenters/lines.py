@@ -155,7 +155,7 @@ def _view(design: Design, frame: Frame, lines: list[Line], colour: str) -> LineV
         over_shoulder=_over_shoulder(design, frame, name),
         group=group,
         whole_band=group != "bust" and lines[0].closed,
-        worn=any(line.name in design.worn_lines() for line in lines),
+        worn=any(line.name in design.all_active_lines() for line in lines),
     )
 
 

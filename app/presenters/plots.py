@@ -18,6 +18,7 @@ from app.presenters.zones import zone_title
 from core.mechanics.iteration import Observables, Record
 from core.pipeline.frame import RegionFrame
 from core.pipeline.live_solver import Frame
+from core.pipeline.stages import RegionStages
 
 PLOTTED_TURNS = 600
 """Turns that the live plot looks back."""
@@ -78,17 +79,7 @@ def exact_answer(frame: Frame) -> Exact:
 
 def table_of(frame: Frame) -> tuple[list[str], list[Sequence[object]]]:
     """Return the heading and the rows of all turns of all runs, as they were made."""
-    names = [line_title(line.name) for line in frame.stages.model.lines]
-    heading = [
-        tr("run"),
-        tr("iteration"),
-        tr("volume error [%]"),
-        tr("volume error [ml]"),
-        tr("bust points up [mm]"),
-        tr("foremost place up [mm]"),
-        tr("largest move [mm]"),
-        *(tr("{line} [mm]").format(line=name) for name in names),
-    ]
+    heading = _heading(frame.stages, (tr("bust points up [mm]"), tr("foremost place up [mm]")))
     rest = frame.stages.rest_marks
     rows: list[Sequence[object]] = [
         (control, row.iteration, *_record_figures(row, row.marks or rest, rest), row.step, *row.lengths)
@@ -98,19 +89,17 @@ def table_of(frame: Frame) -> tuple[list[str], list[Sequence[object]]]:
     return heading, rows
 
 
+def _heading(stages: RegionStages, own: Sequence[str]) -> list[str]:
+    """Return the heading of the table of a region, whose ``own`` columns follow the volume errors."""
+    lines = (tr("{line} [mm]").format(line=line_title(line.name)) for line in stages.model.lines)
+    errors = tr("volume error [%]"), tr("volume error [ml]")
+    return [tr("run"), tr("iteration"), *errors, *own, tr("largest move [mm]"), *lines]
+
+
 def lower_table_of(shown: RegionFrame) -> tuple[list[str], list[Sequence[object]]]:
     """Return the heading and the rows of all turns of all runs of the lower trunk."""
     zones = [tr("{zone}, volume error [ml]").format(zone=zone_title(zone.name)) for zone in shown.zones]
-    names = [line_title(line.name) for line in shown.stages.model.lines]
-    heading = [
-        tr("run"),
-        tr("iteration"),
-        tr("volume error [%]"),
-        tr("volume error [ml]"),
-        *zones,
-        tr("largest move [mm]"),
-        *(tr("{line} [mm]").format(line=name) for name in names),
-    ]
+    heading = _heading(shown.stages, zones)
     rest_ml = shown.stages.model.volume.rest_volume / 1000.0
     rows: list[Sequence[object]] = [
         (

@@ -255,7 +255,7 @@ def _limits(reply: InverseResult) -> list[str]:
 def change_text(before: Design, reply: InverseResult) -> list[str]:
     """Return how lengths would change, row by row, what elastics press with, and if others were not asked."""
     after, texts = reply.design, []
-    for title, name in _rows(sorted(after.worn_lines()), after):
+    for title, name in _rows(sorted(after.all_active_lines()), after):
         one, other = before.ratio(name), after.ratio(name)
         if abs(one - other) >= SAME:
             words = tr("{line} {before} → {after} %") + " ({change})"
@@ -276,13 +276,13 @@ def change_text(before: Design, reply: InverseResult) -> list[str]:
 
 def locked_lines_text(design: Design, kept: Collection[str]) -> str:
     """Return which worn lines stay because they are locked, if any do."""
-    lines = _titles([name for name in sorted(design.worn_lines()) if name in kept], design)
+    lines = _titles([name for name in sorted(design.all_active_lines()) if name in kept], design)
     return tr("Locked, not changed: {lines}.").format(lines=lines) if lines else ""
 
 
 def missing_input_text(design: Design, moving: Collection[str]) -> str:
     """Return what has to be done before anything can be asked, if there is something; see ``free_lines``."""
-    lines = design.worn_lines() & set(moving)
+    lines = design.all_active_lines() & set(moving)
     if not lines:
         return tr("Activate lines first: choose a preset or shorten a line.")
     if all(design.line_settings(name).locked for name in lines):
@@ -374,7 +374,7 @@ def unlimited_text(free: InverseResult, goals: Sequence[Goal], now: Mapping[str,
 
 def activated_text(before: Design, after: Design) -> str:
     """Return which lines an answer switches on, if it does."""
-    lines = _titles(sorted(after.worn_lines() - before.worn_lines()), after)
+    lines = _titles(sorted(after.all_active_lines() - before.all_active_lines()), after)
     return tr("Activated: {lines}.").format(lines=lines) if lines else ""
 
 

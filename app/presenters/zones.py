@@ -8,7 +8,7 @@ from core.pipeline.zone_volumes import ZoneVolume
 
 
 def zone_title(name: str) -> str:
-    """Return what a zone of the lower trunk is called."""
+    """Return the title of a zone of the lower trunk."""
     return {
         "waist": tr("Waist"),
         "belly": tr("Belly"),
@@ -32,8 +32,8 @@ def taken_up_texts(frame: Frame) -> tuple[str, str]:
 
 
 def taken_up_tip() -> str:
-    """Return what volume taken up inside is."""
+    """Return the definition of the volume taken up inside."""
     return tr(
-        "Volume that lines displace at the waist and that is assumed to move inward and up under the ribs, "
-        "where no skin shows it. Not measured; Model options set the share that stays under the skin."
+        "Volume displaced by lines at the waist and assumed to move inward and up under the ribs, not "
+        "visible on the skin. Not measured: Model options set the share that stays under the skin."
     )

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
 from app.presenters.samples import sample_design
 from app.rendering.ambient_occlusion import bake_occlusion
+from app.research.case_memo import CaseMemo
 from app.research.lower_cases import LowerStudy
 from core.document.lines import ActiveLine
 from core.geometry.mesh import Floats, Points
@@ -37,20 +37,12 @@ EXCESSIVE, MODEST = 0.5, 0.97
 TURNS = 120
 """Turns shown: the paper does not say how many it made."""
 
-T = TypeVar("T")
-
 
 @dataclass(frozen=True, eq=False)
-class Study:
+class Study(CaseMemo):
     """Keeps what has been built and solved, by what was asked; ``lower`` that of the lower trunk."""
 
-    memo: dict[tuple[Any, ...], Any] = field(default_factory=dict)
     lower: LowerStudy = field(default_factory=LowerStudy)
-
-    def _once(self, key: tuple[Any, ...], make: Callable[[], T]) -> T:
-        if key not in self.memo:
-            self.memo[key] = make()
-        return self.memo[key]  # type: ignore[no-any-return]
 
     def stages(self, body: str, template: str | None = None, **choices: Any) -> Stages:
         """Return the stages of a sample body with its line on, on the paper's template for it if None.

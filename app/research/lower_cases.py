@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field, replace
-from typing import Any, TypeVar
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from app.presenters.samples import WHOLE_TRUNK, sample_design
 from app.rendering.ambient_occlusion import bake_occlusion
+from app.research.case_memo import CaseMemo
 from core.control_mesh.lower_template import HIP_ROW
 from core.document.lower_trunk import LowerTrunk
 from core.geometry.mesh import Flags, Floats
@@ -37,8 +36,6 @@ TURNS = 200
 LAST = 20
 """Iterations at the end over which a swing is measured."""
 
-T = TypeVar("T")
-
 
 @dataclass(frozen=True, eq=False)
 class Course:
@@ -63,15 +60,8 @@ class Course:
 
 
 @dataclass(frozen=True, eq=False)
-class LowerStudy:
+class LowerStudy(CaseMemo):
     """Keeps what has been built and solved of the lower trunk, by what was asked."""
-
-    memo: dict[tuple[Any, ...], Any] = field(default_factory=dict)
-
-    def _once(self, key: tuple[Any, ...], make: Callable[[], T]) -> T:
-        if key not in self.memo:
-            self.memo[key] = make()
-        return self.memo[key]  # type: ignore[no-any-return]
 
     def _bare(self, kept: float) -> Stages:
         former = next((self.memo[key] for key in self.memo if key[0] == "bare"), None)

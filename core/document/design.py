@@ -249,7 +249,7 @@ class Design:
         """Return the names of the lines that are worn."""
         return frozenset(line.name for line in self.lines)
 
-    def worn_lines(self) -> frozenset[str]:
+    def all_active_lines(self) -> frozenset[str]:
         """Return the names of the lines that are worn in any region."""
         return frozenset(line.name for region in self.regions for line in region.lines)
 

@@ -253,7 +253,7 @@ def preset_from(design: Design, title: str) -> Preset:
 def _as_preset(name: str, design: Design, line: CustomLine | None, template: Template) -> PresetLine:
     traits = design.line_settings(name)
     places = "" if line is None else format_path(line, template)
-    worn = name in design.worn_lines()
+    worn = name in design.all_active_lines()
     length = design.ratio(name) if worn else None
     elastic = traits.elastic if worn else ""
     dress = (traits.width, traits.title, traits.colour, traits.stiffness, traits.linked, elastic)

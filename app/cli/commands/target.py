@@ -134,11 +134,11 @@ def find_lengths(options: Namespace) -> TargetResult:
         )
     check_project_name(options.out)
     stages = with_lines_and_elastics(build(design_of(options)), options.line or [], options.elastic or [])
-    if not stages.design.worn_lines() and not options.optional:
+    if not stages.design.all_active_lines() and not options.optional:
         raise LineError(
             Message("No active lines."), Message("Activate the lines to use: --line mid-bust=100%.")
         )
-    chosen = stages.design.worn_lines()
+    chosen = stages.design.all_active_lines()
     active = {line.name.lower(): line for line in stages.lines if line.name in chosen}
     locked = [line.name for name in options.lock or [] for line in _active(active, name, name)]
     goals = tuple(_absolute(stages, goal) if goal.name in changes else goal for goal in goals)
@@ -270,7 +270,7 @@ def _value(goal: Goal, value: float) -> str:
 def target_data(found: TargetResult, out: str) -> dict[str, Any]:
     """Return the result as plain values, ready for JSON."""
     reply, before = found.reply, found.stages.design
-    lines = {line.name: line for line in found.stages.lines if line.name in reply.design.worn_lines()}
+    lines = {line.name: line for line in found.stages.lines if line.name in reply.design.all_active_lines()}
     return {
         "assessment": found.assessment.as_data(),
         "figures": {

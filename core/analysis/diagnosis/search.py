@@ -86,7 +86,7 @@ class Search:
 
     def _build(self, design: Design) -> Stages:
         """Build a changed design; what was made for others of the same model is not made again."""
-        alike = design.model_options, design.worn_lines()
+        alike = design.model_options, design.all_active_lines()
         self._built[alike] = build(design, self._built.get(alike, self._sick.stages))
         return self._built[alike]
 

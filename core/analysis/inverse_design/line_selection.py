@@ -23,10 +23,9 @@ Chosen = tuple[str, ...]
 
 def optional_lines(stages: Stages) -> tuple[Chosen, ...]:
     """Return the inactive lines that could move the body, linked ones together."""
-    design, moving = stages.design, [line.name for line in stages.lines if line.constrains]
-    off = [
-        name for name in moving if name not in design.worn_lines() and not design.line_settings(name).locked
-    ]
+    design, active = stages.design, stages.design.all_active_lines()
+    moving = [line.name for line in stages.lines if line.constrains]
+    off = [name for name in moving if name not in active and not design.line_settings(name).locked]
     groups = (tuple(sorted(set(design.linked_pair(name)).intersection(off))) for name in off)
     return tuple(dict.fromkeys(groups))
 
@@ -93,7 +92,7 @@ class LineSelection:
         """
         if reply.reachable or not reply.at_pressure_limit:
             return None
-        chosen = [name for name in self._chosen if name in reply.design.worn_lines()]
+        chosen = [name for name in self._chosen if name in reply.design.all_active_lines()]
         free = LineSelection(self._stages, chosen, self._bounds, math.inf)
         return free.solve(goals, progress)
 
@@ -125,4 +124,4 @@ class LineSelection:
 
 def activated(before: Design, after: Design) -> tuple[str, ...]:
     """Return the lines that are active ``after`` and were not ``before``."""
-    return tuple(sorted(after.worn_lines() - before.worn_lines()))
+    return tuple(sorted(after.all_active_lines() - before.all_active_lines()))

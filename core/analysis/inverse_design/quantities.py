@@ -21,7 +21,7 @@ FAMILIES: tuple[QuantityFamily, ...] = (BUST, APEX, GIRTHS, EVEN, OUTLINE, LOWER
 NAMES = tuple(name for family in FAMILIES for name in family.names)
 """What can be asked for by name, in millimetres."""
 
-LOWER_NAMES = tuple(name for family in FAMILIES if family.region == "lower" for name in family.names)
+LOWER_TARGETS = tuple(name for family in FAMILIES if family.region == "lower" for name in family.names)
 """Those of the lower trunk."""
 
 

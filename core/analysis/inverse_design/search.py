@@ -328,6 +328,8 @@ class Search:
 
 def _asked(stages: Stages, groups: Sequence[LineGroup], read: ReadMany) -> tuple[LineGroup, ...]:
     """Return the groups of lines in regions that what is read depends on: others keep their lengths."""
+    if len(stages.regions) == 1:
+        return tuple(groups)
     _, slopes = read(stages.rest_points)
     regions = zip(stages.regions, stages.region_rows, strict=True)
     asked = [region for region, rows in regions if slopes[:, rows].any()]

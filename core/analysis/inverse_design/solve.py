@@ -275,7 +275,7 @@ class InverseSolver:
             agreed,
             dict(limit.pressure),
             limit.kpa,
-            tuple(sorted(design.worn_lines() - set(limit.pressure))),
+            tuple(sorted(design.all_active_lines() - set(limit.pressure))),
             float(np.maximum(found.solution.tensions, 0.0).sum()),
             sum(len(search) - before for search, before in self._used),
             self._bounds.longest,

@@ -6,7 +6,7 @@ derivatives (``linear_propagation``), or sampled by solving designs anew (``mont
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from types import MappingProxyType
@@ -106,23 +106,21 @@ class UncertaintyEstimator:
             progress("propagating", 0.0)
             self._propagation = self._propagation or Propagation(self.trials)
             for at, effect in enumerate(effects(self._propagation, turning)):
-                self._keep(effect)
+                self._keep(effect, () if self.trials.whole.lower is None else _REPLACED)
                 progress("propagating", (at + 1.0) / (len(turning) + 1.0))
             if self.trials.whole.lower is not None:
                 self._below = self._below or LowerPropagation(self.trials.whole, self.sizes)
                 for effect in lower_effects(self._below, landmarks=marks):
-                    self._found += [effect] if effect else []
-                    self._failed += effect is None
+                    self._keep(effect)
                     progress("propagating", 1.0)
             found = _spread(self._propagation, self._found, self.sizes, self._failed)
             return found if self._below is None else _with_lower(found, self._below, self.trials.whole.design)
 
-    def _keep(self, effect: Effect | None) -> None:
-        """Keep what a knob of the bust does, but to measures that the lower trunk takes otherwise."""
+    def _keep(self, effect: Effect | None, replaced: Collection[str] = ()) -> None:
+        """Keep the effect of a parameter, except on values that are ``replaced`` by others."""
         self._failed += effect is None
         if effect is not None:
-            taken = _REPLACED if self.trials.whole.lower is not None else frozenset()
-            own = {key: step for key, step in effect.values.items() if key not in taken}
+            own = {key: step for key, step in effect.values.items() if key not in replaced}
             self._found.append(replace(effect, values=own))
 
 

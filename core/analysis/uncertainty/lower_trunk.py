@@ -19,6 +19,7 @@ from core.analysis.uncertainty.outputs import Figures, line_values
 from core.analysis.uncertainty.parameters import UPRIGHT, UncertainParameter, line_parameters
 from core.deformation.tffd import deform
 from core.errors import UserError
+from core.garment.tension import line_tensions
 from core.geometry.mesh import Floats, Mesh, Points
 from core.landmarks.lower_trunk.sections import LowerSections
 from core.landmarks.manual import in_file
@@ -111,7 +112,7 @@ class LowerPropagation:
 
     def _read(self, region: LowerStages, points: Points) -> Figures:
         """Return measures and lines of the region as it is fitted, and its lines are set."""
-        tensions = LineResponse(region, exact_solution(region)).tensions
+        tensions = line_tensions(region, points)
         return line_values(region, points, tensions, self._lines.meant) | measures(region, points)
 
     def _along(self, moves: Points) -> Floats:

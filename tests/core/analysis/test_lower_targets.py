@@ -10,7 +10,7 @@ from slopes import doubled, slope
 from whole_trunk import trunk_stages, wearing
 
 from core.analysis.inverse_design.profile_quantities import profile_name
-from core.analysis.inverse_design.quantities import LOWER_NAMES, reading
+from core.analysis.inverse_design.quantities import LOWER_TARGETS, reading
 from core.analysis.inverse_design.quantity import Goal
 from core.analysis.inverse_design.solve import InverseResult, solve_targets
 from core.errors import UserError
@@ -36,7 +36,7 @@ def value(stages: Stages, name: str, points: Points) -> float:
     return reading(stages, name)(points).value
 
 
-@pytest.mark.parametrize("name", [*LOWER_NAMES, "lift", profile_name("0", 150.0)])
+@pytest.mark.parametrize("name", [*LOWER_TARGETS, "lift", profile_name("0", 150.0)])
 def test_slopes_are_those_of_differences(stages: Stages, name: str) -> None:
     twice = doubled(stages)
     here, free = solved_points(stages), np.concatenate([~each.control.fixed for each in stages.regions])
@@ -88,7 +88,7 @@ def test_a_limit_of_pressure_holds_for_lines_of_both_regions(stages: Stages) -> 
     assert not found.reachable
     assert "waist" in found.at_pressure_limit
     assert max(found.pressure.values()) < 3.0
-    assert set(found.pressure) == found.design.worn_lines()
+    assert set(found.pressure) == found.design.all_active_lines()
 
 
 def test_lines_of_a_region_that_nothing_is_asked_of_keep_their_lengths(stages: Stages) -> None:

@@ -57,7 +57,7 @@ def test_a_band_cut_too_long_is_that_of_a_longer_line() -> None:
 
 
 def test_stiffer_lines_are_those_of_a_stiffer_model() -> None:
-    stages, line = worn(), knob(LINE)
+    stages = worn()
     small = UncertainParameter(LINE, 0.01)
     effect = propagation().effect(small)
     assert effect is not None
@@ -68,7 +68,6 @@ def test_stiffer_lines_are_those_of_a_stiffer_model() -> None:
     )
     more, less = map(waist_of, sides)
     assert effect.values["after:waist_girth"] == pytest.approx((more - less) / 2.0, rel=0.01)
-    assert line.sd > small.sd
 
 
 def test_all_skin_further_out_is_a_longer_tape_and_no_change() -> None:
@@ -89,7 +88,7 @@ def test_an_elastic_tells_its_force_and_every_landmark_has_a_knob() -> None:
     assert {each.name for each in told.knobs if each.source == LANDMARKS} == set(NAMES)
 
 
-def test_a_belly_found_higher_moves_its_girth_and_no_other_sides_volume() -> None:
+def test_a_belly_landmark_that_is_higher_changes_its_girth_and_not_the_hip() -> None:
     effect = propagation().effect(knob(LANDMARKS, "belly"))
     assert effect is not None
     assert abs(effect.values["before:belly_girth"]) > 0.5

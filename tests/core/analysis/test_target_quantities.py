@@ -10,7 +10,7 @@ from slopes import doubled, slope
 
 from app.presenters.samples import sample_design
 from core.analysis.inverse_design.profile_quantities import profile_name, section_at
-from core.analysis.inverse_design.quantities import LOWER_NAMES, NAMES, reading
+from core.analysis.inverse_design.quantities import LOWER_TARGETS, NAMES, reading
 from core.deformation.tffd import deform
 from core.errors import UserError
 from core.geometry.planar_curves import Plane, Slicer
@@ -24,7 +24,7 @@ def stages() -> Stages:
     return build(replace(sample_design(), volume="exact").with_line("mid-bust", 0.9))
 
 
-BUST_NAMES = tuple(name for name in NAMES if name not in LOWER_NAMES)
+BUST_NAMES = tuple(name for name in NAMES if name not in LOWER_TARGETS)
 PROFILES = ("profile left 340", "profile right 320.125", "profile 60.5 375")
 
 

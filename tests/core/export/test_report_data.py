@@ -184,7 +184,7 @@ def test_the_levels_of_waist_and_hip_are_shown_where_lines_shape_them() -> None:
         assert len(cut.before) == len(cut.after) == curves
         for line, girth in zip((cut.before[0], cut.after[0]), girths[name], strict=True):
             assert np.linalg.norm(np.diff(line, axis=0), axis=1).sum() == pytest.approx(
-                girth.skin_mm, abs=8.0
+                girth.skin_mm, abs=0.05
             )
 
 

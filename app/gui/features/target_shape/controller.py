@@ -19,7 +19,7 @@ from app.gui.features.target_shape.menu import TargetMenu
 from app.gui.features.target_shape.presenter import meets_targets, show_result, target_views
 from app.gui.features.target_shape.profile_tool import ProfileTool
 from app.gui.features.target_shape.surroundings import TargetOptions
-from app.gui.features.target_shape.targets import PRESSURE, Targets, TargetUndo, seen_figures
+from app.gui.features.target_shape.targets import PRESSURE, Targets, TargetUndo, default_quantities
 from app.gui.features.target_shape.view_state import ViewState
 from app.gui.features.target_shape.worker import TargetAnswer, TargetQuery, TargetWorker
 from app.gui.widgets.basic import announce
@@ -127,7 +127,7 @@ class TargetShapeController(QObject):
         self._context.navigation.show_step("lines")
         limit = math.inf if math.isinf(self.all_wishes.most_kpa) else limit
         self.ground.begin(prepare, text)
-        wishes = Targets.of(goals, seen_figures(self.ground.design or self._session.design))
+        wishes = Targets.of(goals, default_quantities(self.ground.design or self._session.design))
         self.all_wishes, self.answer, self._apply_due = replace(wishes, limit=limit), None, False
         self.back.remember()
         self._pages.setCurrentWidget(self.card)
@@ -314,7 +314,9 @@ class TargetShapeController(QObject):
         if not self.is_open or frame is None or design is None:
             return
         missing = self.ground.missing
-        self.card.show_help(bool(missing), locked=not design.worn_lines().isdisjoint(self.ground.moving))
+        self.card.show_help(
+            bool(missing), locked=not design.all_active_lines().isdisjoint(self.ground.moving)
+        )
         if missing:
             self.card.show_wishes([], missing)
             self.card.show_answer()

@@ -15,7 +15,7 @@ from app.i18n.catalog import listed, tr
 from app.presenters.target_shape import target_title
 from core.analysis.inverse_design.profile_curve import ProfileCurve
 from core.analysis.inverse_design.profile_quantities import section_of
-from core.analysis.inverse_design.quantities import LOWER_NAMES
+from core.analysis.inverse_design.quantities import LOWER_TARGETS
 from core.analysis.inverse_design.quantity import Goal
 from core.document.design import Design
 from core.garment.pressure import pressure_limits
@@ -27,14 +27,14 @@ if TYPE_CHECKING:
 SEEN = ("lift", "out")
 """Figures of the bust that are always told: what is not asked for may move as well."""
 
-SEEN_BELOW = ("waist girth", "hip girth")
+SEEN_LOWER = ("waist girth", "hip girth")
 """The same of the lower trunk."""
 
 
-def seen_figures(design: Design) -> tuple[str, ...]:
+def default_quantities(design: Design) -> tuple[str, ...]:
     """Return the figures that are always told of a design: those of the regions that have active lines."""
     bust, *lower = (bool(region.lines) for region in design.regions)
-    return (*(SEEN if bust or not any(lower) else ()), *(SEEN_BELOW if any(lower) else ()))
+    return (*(SEEN if bust or not any(lower) else ()), *(SEEN_LOWER if any(lower) else ()))
 
 
 PRESSURE = "pressure"
@@ -139,7 +139,7 @@ class Targets:
         """Return what is asked for; with a limit alone that a figure of each region stays as ``now`` [mm]."""
         if self.only_limit is None:
             return self.asked
-        first = {name in LOWER_NAMES: name for name in reversed(tuple(self.figures) or self.seen)}
+        first = {name in LOWER_TARGETS: name for name in reversed(tuple(self.figures) or self.seen)}
         return tuple(Goal(name, now[name]) for _, name in sorted(first.items()) if name in now)
 
 
