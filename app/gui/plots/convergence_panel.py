@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QSizePolicy, QVB
 
 from app.gui.plots.canvas import Turns
 from app.gui.plots.live_plot import LivePlot
-from app.gui.plots.painting import Entry, Legend, legend_entries, legend_width, zone_entries
+from app.gui.plots.painting import ROLE_COLORS, Entry, Legend, legend_entries, legend_width, zone_entries
 from app.gui.plots.status_chip import StatusChip, StatusLine
 from app.gui.theme.stylesheet import label
 from app.gui.widgets.basic import Segment, ToolButton, sentence
@@ -228,10 +228,13 @@ class ConvergencePanel(QWidget):
         """Name the runs in one place: beside the choice of the region, where there is none beside the first
         plot's title, or below both plots if that is narrow.
         """
+        entries = self._entries
         room = self.error_plot.width() - self.error_plot.title.width() - 8
-        place = 2 if self._lower is not None else 0 if legend_width(self._entries) <= room else 1
+        place = 2 if self._lower is not None else 0 if legend_width(entries) <= room else 1
+        if place == 2 and legend_width(entries) > self._top.width() - self.region.sizeHint().width() - 8:
+            entries = [entry for entry in entries if entry[1] != ROLE_COLORS["ghost"]]
         for each, legend in enumerate(self._legends):
-            legend.show_entries(self._entries if each == place else [])
+            legend.show_entries(entries if each == place else [])
             legend.setVisible(each == place)
 
     def set_verdict(self, verdict: VerdictView) -> None:
