@@ -10,11 +10,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from scipy import sparse
 
-from core.geometry.mesh import Floats, Indices
+from core.geometry.mesh import Flags, Floats, Indices
 
 _NEAR = 1e-9
 """Places nearer to each other than this, in rows or columns, are one."""
@@ -25,52 +26,96 @@ Cell = tuple[float, float]
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """Row and column of each control point, (n,), and the triangles between them, ``faces`` (m, 3)."""
+    """Row and column of each control point, (n,), and the triangles between them, ``faces`` (m, 3).
+
+    ``around`` tells that rows are closed: beyond the last column comes the first. Points of no triangle, such
+    as those of legs, are none of the grid.
+    """
 
     row: Indices
     column: Indices
     faces: Indices
+    around: bool = False
 
-    @property
+    @cached_property
     def top(self) -> int:
         """Return the highest row."""
-        return int(self.row.max())
+        return int(self.row[self.faces].max())
+
+    @cached_property
+    def half(self) -> int:
+        """Return the outermost column of the left side."""
+        return int(self.column[self.faces].max())
+
+    @cached_property
+    def first(self) -> int:
+        """Return the outermost column of the right side."""
+        return int(self.column[self.faces].min())
 
     @property
-    def half(self) -> int:
-        """Return the outermost column of the left side; that of the right side is its negative."""
-        return int(self.column.max())
+    def period(self) -> int:
+        """Return after how many columns a closed row is round."""
+        return self.half - self.first + 1
 
     @cached_property
     def _cells(self) -> Indices:
-        """Return the two triangles of each cell between four points, (rows - 1, columns - 1, 2)."""
-        row, column = self.row[self.faces].min(axis=1), self.column[self.faces].min(axis=1)
+        """Return the two triangles of each cell between four points, (rows - 1, columns, 2)."""
+        row = self.row[self.faces].min(axis=1)
+        columns = self.column[self.faces]
+        column = self.near(columns, columns[:, :1]).min(axis=1) - self.first
+        if self.around:
+            column %= self.period
         order = np.lexsort((column, row))
-        return order.reshape(self.top, 2 * self.half, 2)
+        return order.reshape(self.top, -1, 2)
+
+    def near(self, columns: Any, others: Any) -> Any:
+        """Return ``columns`` counted so that they are less than half way round from ``others``."""
+        if not self.around:
+            return columns
+        return columns + self.period * np.rint((others - columns) / self.period).astype(np.int64)
 
     def cell(self, places: Floats) -> Indices:
         """Return the lowest row and column of the cell around each place, shape (k, 2)."""
-        low, high = np.array([0, -self.half]), np.array([self.top - 1, self.half - 1])
-        return np.clip(np.floor(places).astype(np.int64), low, high)
+        low, high = np.array([0, self.first]), np.array([self.top - 1, self.half - 1])
+        cells = np.floor(places).astype(np.int64)
+        if self.around:
+            cells[:, 1] = (cells[:, 1] - self.first) % self.period + self.first
+            high[1] = self.half
+        return np.clip(cells, low, high)
 
     def triangles(self, cells: Indices) -> Indices:
         """Return the corners of the two triangles of each cell, shape (k, 2, 3)."""
-        return np.asarray(self.faces[self._cells[cells[:, 0], cells[:, 1] + self.half]])
+        return np.asarray(self.faces[self._cells[cells[:, 0], cells[:, 1] - self.first]])
 
     def has_rising_diagonal(self, cell: Indices) -> bool:
         """Return whether the diagonal of a cell runs from its lowest row and column to its highest."""
         points = np.concatenate(self.triangles(cell[None])[0])
-        at = self.row[points] - cell[0] + self.column[points] - cell[1]
+        at = self.row[points] - cell[0] + self.near(self.column[points], cell[1]) - cell[1]
         return bool((at == 0).sum() == 2)  # both triangles have that corner
+
+    def covers(self, corners: Indices) -> Flags:
+        """Return which triangles, by their ``corners`` (k, 3), are between rows of the grid."""
+        return np.asarray((self.row[corners] <= self.top).all(axis=1))
 
     def places(self, corners: Indices, weights: Floats) -> Floats:
         """Return rows and columns, (k, 2), of places between ``corners`` (k, 3) with ``weights`` (k, 3)."""
-        at = np.stack([self.row[corners], self.column[corners]], axis=2)
-        return np.asarray(np.einsum("kc,kcx->kx", weights, at))
+        columns = self.column[corners]
+        at = np.stack([self.row[corners], self.near(columns, columns[:, :1])], axis=2)
+        found = np.asarray(np.einsum("kc,kcx->kx", weights, at))
+        if self.around:
+            found[:, 1] = self.half - (self.half - found[:, 1]) % self.period
+        return found
 
     def has(self, place: Cell) -> bool:
         """Return whether the control mesh covers a position."""
         return 0.0 <= place[0] <= self.top and abs(place[1]) <= self.half
+
+    def unrolled(self, places: Sequence[Cell]) -> list[Cell]:
+        """Return places whose columns count on where a curve goes round past the last one."""
+        counted = list(places[:1])
+        for row, column in places[1:]:
+            counted.append((row, float(self.near(column, counted[-1][1]))))
+        return counted
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +136,7 @@ def embed(grid: Grid, places: Sequence[Cell]) -> EmbeddedCurve:
 
     Vertices are added where it crosses an edge of the mesh, so that it stays on the triangles.
     """
-    whole = np.array(_crossed(grid, places))
+    whole = np.array(_crossed(grid, grid.unrolled(places)))
     steps = float(np.abs(np.diff(whole, axis=0)).max(axis=1).sum())
     corners, weights = locate_on_grid(grid, whole)
     row = np.repeat(np.arange(len(whole)), 3)
@@ -106,7 +151,8 @@ def locate_on_grid(grid: Grid, places: Floats) -> tuple[Indices, Floats]:
     triangles = grid.triangles(grid.cell(places))
     best, weights = triangles[:, 0], np.full((len(places), 3), -np.inf)
     for faces in np.moveaxis(triangles, 1, 0):
-        at = np.stack([grid.row[faces], grid.column[faces]], axis=2).astype(np.float64)
+        columns = grid.near(grid.column[faces], places[:, 1:])
+        at = np.stack([grid.row[faces], columns], axis=2).astype(np.float64)
         a, b, way = at[:, 1] - at[:, 0], at[:, 2] - at[:, 0], places - at[:, 0]
         area = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
         u = (way[:, 0] * b[:, 1] - way[:, 1] * b[:, 0]) / area
@@ -146,7 +192,9 @@ def _of_rows(ends: Floats) -> list[float]:
 
 def _diagonal(grid: Grid, start: Floats, end: Floats) -> float:
     """Return at which share of a way within a cell it crosses the diagonal of the cell, 1 if it does not."""
-    base = grid.cell(0.5 * (start + end)[None])[0]
-    rising = grid.has_rising_diagonal(base)
+    middle = 0.5 * (start + end)
+    cell = grid.cell(middle[None])[0]
+    rising = grid.has_rising_diagonal(cell)
+    base = np.array([cell[0], grid.near(cell[1], middle[1] - 0.5)])
     a, b = (float(x - y if rising else x + y - 1.0) for x, y in (start - base, end - base))
     return a / (a - b) if a * b < 0.0 and min(abs(a), abs(b)) > _NEAR else 1.0

@@ -10,6 +10,7 @@ import numpy as np
 from core.control_mesh.embedding import EmbeddedCurve, Grid
 from core.control_mesh.fitting_frame import FittingFrame, fit_frame
 from core.control_mesh.fold_rows import Crease, find_creases
+from core.control_mesh.lower_template import trunk_grid
 from core.control_mesh.projection import project_border, project_interior, project_line
 from core.control_mesh.quality import FitQuality, measure_fit
 from core.control_mesh.relaxation import relax
@@ -92,7 +93,9 @@ class ControlMesh:
 
     @property
     def grid(self) -> Grid:
-        """Return rows, columns and triangles of the points."""
+        """Return rows, columns and triangles of the points; of legs none."""
+        if self.region == LOWER:
+            return trunk_grid(self.row, self.column, self.mesh.faces)
         return Grid(self.row, self.column, self.mesh.faces)
 
     def upper_end(self, name: str) -> Floats:

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from core.control_mesh.embedding import Grid
 from core.errors import FitError
 from core.geometry.mesh import Faces, Flags, Floats, Indices, frozen
 from core.messages import Message
@@ -141,6 +142,16 @@ class LowerTemplate:
         fixed.setflags(write=False)
         return fixed
 
+    @property
+    def free(self) -> Flags:
+        """Return which points may move, (n,)."""
+        return ~self.fixed
+
+    @property
+    def grid(self) -> Grid:
+        """Return rows, columns and triangles of the points of the trunk."""
+        return trunk_grid(self.row, self.column, self.faces)
+
     @cached_property
     def faces(self) -> Faces:
         """The triangles, (m, 3), wound outward; diagonals lie closest to round bellies."""
@@ -211,6 +222,11 @@ class LowerTemplate:
             if low <= row < high and first <= abs(column) < last and zone.side in ("", side):
                 return number
         raise _refusal("a cell is in no zone")
+
+
+def trunk_grid(row: Indices, column: Indices, faces: Faces) -> Grid:
+    """Return rows, columns and triangles of the trunk among those of a whole lower mesh."""
+    return Grid(row, column, faces[(row[faces] <= FOLD_ROW).all(axis=1)], around=True)
 
 
 def _points_inward(row: int, column: int) -> bool:

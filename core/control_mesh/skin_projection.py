@@ -85,7 +85,7 @@ def locate_on_mesh(mesh: Mesh, grid: Grid, points: Points) -> MeshPositions:
         worth = np.where(out > 0.0, 1e6 * (1.0 + out), np.abs(found[..., 2]))
         best = np.nan_to_num(worth, nan=np.inf).argmin(axis=0), np.arange(len(rows))
         corners[rows], weights[rows] = mesh.faces[triangles[best[0]]], shares[best]
-    far = np.maximum(-weights.min(axis=1), 0.0)
+    far = np.where(grid.covers(corners), np.maximum(-weights.min(axis=1), 0.0), 1.0)
     weights = np.clip(weights, 0.0, None)
     weights /= np.maximum(weights.sum(axis=1, keepdims=True), 1e-12)
     return MeshPositions(grid.places(corners, weights), far)

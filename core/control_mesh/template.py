@@ -128,6 +128,11 @@ class Template:
             {name: tuple(self.point(row, column) for column in inner) for name, row in self.lines.items()}
         )
 
+    @cached_property
+    def mirror(self) -> Indices:
+        """Return the point of the other side that belongs to each, (n,)."""
+        return _index(self.row * (2 * self.half + 1) - self.column + self.half)
+
     @property
     def grid(self) -> Grid:
         """Return rows, columns and triangles of the points."""

@@ -22,7 +22,7 @@ from core.document.document_limits import (
     check_words,
 )
 from core.document.elastic import TISSUE_LIMITS, TISSUE_STIFFNESS, Elastic, check_elastics
-from core.document.lines import ActiveLine, CustomLine, LineSettings, partner_of
+from core.document.lines import BUST, LOWER, ActiveLine, CustomLine, LineSettings, partner_of
 from core.document.lower_trunk import LOWER_SETTINGS, LowerTrunk, lower_line_names
 from core.document.printable_name import repeated
 from core.errors import LandmarkError, LineError, UserError
@@ -48,7 +48,7 @@ class Design:
     force; None stands for 0.97 of the limit at which it starts to vibrate at rest. ``scaled_normals`` lets
     what stands off the control mesh grow with it; ``dense_volume`` lets the exact answer hold the volume of
     the body itself and not that of the control mesh. For the choices of the model see ``options``.
-    ``own_lines`` are lines beside those of the template, ``traits`` how lines are treated where that is
+    ``own_lines`` are lines beside those of the templates of all regions, ``traits`` how lines are treated where that is
     not as usual, ``placed`` the landmarks that were placed by hand, ``own_measures`` what is measured beside
     the usual, ``elastics`` those that lines are made of, with their curves, so that a project opens
     elsewhere. ``tissue_stiffness`` [N/m] tells what the model's forces are in newtons, an estimate (see
@@ -116,6 +116,7 @@ class Design:
 
     def _check_names(self) -> None:
         below = () if self.lower is None else sorted(lower_line_names())
+        self._check_lower_names()
         if twice := repeated((*(line.name for line in self.own_lines), *below)):
             raise LineError(
                 Message("Two lines are named '{name}'.", name=LineName(twice)),
@@ -135,6 +136,27 @@ class Design:
             raise UserError(
                 Message("Two measurements are named '{name}'.", name=twice),
                 Message("Give each measurement a unique name."),
+            )
+
+    def _check_lower_names(self) -> None:
+        """Refuse lines of the lower trunk that are none, and parts of lines that are not there."""
+        own = {line.name for line in self.own_lines if line.region == BUST}
+        parts = [line for line in self.own_lines if line.continues]
+        loose = [line.name for line in parts if self.lower is not None and line.continues not in own]
+        if loose or len({line.continues for line in parts}) < len(parts):
+            name = (loose or [line.name for line in parts])[-1]
+            raise LineError(
+                Message("The line {line} cannot continue another line.", line=LineName(name)),
+                Message("Draw the line again."),
+            )
+        if self.lower is None:
+            return
+        known = self.lower_names
+        named = {line.name for line in self.lower.lines} | {traits.name for traits in self.lower.traits}
+        for name in sorted(named - known):
+            raise LineError(
+                Message("There is no line '{line}'.", line=LineName(name)),
+                Message("Available lines: {lines}.", lines=", ".join(sorted(known))),
             )
 
     def _check_counts(self) -> None:
@@ -216,7 +238,7 @@ class Design:
             self,
             lines=lower.lines,
             traits=lower.traits,
-            own_lines=(),
+            own_lines=self.lines_of(LOWER),
             cup=None,
             lower=None,
             tissue="net",
@@ -226,9 +248,18 @@ class Design:
             tissue_stiffness=lower.stiffness,
         )
 
+    @cached_property
+    def lower_names(self) -> frozenset[str]:
+        """Return the names of all lines of the lower trunk, the designer's own among them."""
+        return lower_line_names() | {line.name for line in self.lines_of(LOWER)}
+
+    def lines_of(self, region: str) -> tuple[CustomLine, ...]:
+        """Return the designer's own lines of a region."""
+        return tuple(line for line in self.own_lines if line.region == region)
+
     def region_of(self, name: str) -> Design:
         """Return the design of the region that a line belongs to."""
-        return self.lower_design if self.lower is not None and name in lower_line_names() else self
+        return self.lower_design if self.lower is not None and name in self.lower_names else self
 
     def _with_region(self, region: Design) -> Design:
         """Return the design with what another one of the lower trunk decides of its lines."""
@@ -304,11 +335,11 @@ class Design:
         return replace(mine, **neutral) == replace(others, **neutral)
 
     def with_template(self, template: str) -> Design:
-        """Return the design with another template. Raises LineError if there are own lines.
+        """Return the design with another template. Raises LineError if there are own lines of the bust.
 
         Their control points are those of the template that they were drawn on.
         """
-        if self.own_lines and template != self.template:
+        if self.lines_of(BUST) and template != self.template:
             raise LineError(
                 Message(
                     "Custom lines belong to the {template}-polygon control mesh.", template=self.template
@@ -318,19 +349,28 @@ class Design:
         return replace(self, template=template)
 
     def with_custom_line(self, line: CustomLine) -> Design:
-        """Return the design with an own line, in the place of one of the same name if there is one."""
+        """Return the design with an own line, in the place of one of the same name if there is one.
+
+        One of the lower trunk adds that region.
+        """
+        lower = LowerTrunk() if self.lower is None and line.region == LOWER else self.lower
+        own = (*self.own_lines, line)
         if line.name in {each.name for each in self.own_lines}:
             self._check_unlocked(line.name)
             own = tuple(line if each.name == line.name else each for each in self.own_lines)
-            return replace(self, own_lines=own)
-        return replace(self, own_lines=(*self.own_lines, line))
+        return replace(self, own_lines=own, lower=lower)
 
     def without_custom_line(self, name: str) -> Design:
-        """Return the design without an own line and what was decided of it. Raises LineError if locked."""
-        self._check_unlocked(name)
-        own = tuple(each for each in self.own_lines if each.name != name)
-        worn = tuple(line for line in self.lines if line.name != name)
-        return replace(self.with_line_settings(LineSettings(name)), lines=worn, own_lines=own)
+        """Return the design without an own line, its part below the bust, and what was decided of them.
+
+        Raises LineError if it is locked.
+        """
+        gone = self.band_of(name)
+        after = self
+        for each in gone:
+            after._check_unlocked(each)
+            after = after.with_line(each, None).with_line_settings(LineSettings(each))
+        return replace(after, own_lines=tuple(each for each in self.own_lines if each.name not in gone))
 
     def line_settings(self, name: str) -> LineSettings:
         """Return how a line is treated."""
@@ -347,14 +387,22 @@ class Design:
         elastics = tuple(each for each in self.elastics if each.name in used)
         return replace(self, traits=tuple(sorted(kept, key=lambda each: each.name)), elastics=elastics)
 
+    def band_of(self, name: str) -> tuple[str, ...]:
+        """Return the parts of the band that a line belongs to: one in each region that it runs over."""
+        upper = next((each.continues for each in self.own_lines if each.name == name), "") or name
+        return (upper, *(each.name for each in self.own_lines if each.continues == upper))
+
     def linked_pair(self, name: str) -> tuple[str, ...]:
-        """Return the line ``name`` and its partner of the other side, if they share length and lock."""
-        partner = partner_of(name)
+        """Return the line ``name``, the other part of its band, and those of the other side if it is linked.
+
+        They share length and lock.
+        """
+        band, partner = self.band_of(name), partner_of(name)
         sides = [self.line_settings(each) for each in (name, partner)]
         paired = {line.name for line in self.own_lines} | lower_line_names()
         both = partner in paired and all(side.linked for side in sides)
         alike = sides[0].locked == sides[1].locked and self.ratio(name) == self.ratio(partner)
-        return (name, partner) if both and alike else (name,)
+        return (*band, *self.band_of(partner)) if both and alike else band
 
     def with_link(self, name: str) -> Design:
         """Return the design with a line linked to its partner, which takes its length; a lock is for both.
@@ -366,8 +414,10 @@ class Design:
         after = self
         if self.ratio(names[0]) != self.ratio(names[1]):
             worn = name in self.region_of(name).active_lines()
-            after = self.with_line(names[1], self.ratio(name) if worn else None)
-        traits = [replace(self.line_settings(each), linked=True, locked=locked) for each in names]
+            for each in self.band_of(names[1]):
+                after = after.with_line(each, self.ratio(name) if worn else None)
+        every = [each for side in names for each in self.band_of(side)]
+        traits = [replace(self.line_settings(each), linked=True, locked=locked) for each in every]
         return reduce(Design.with_line_settings, traits, after)
 
     def with_placed(self, name: str, position: tuple[float, float, float] | None) -> Design:

@@ -12,18 +12,20 @@ import numpy as np
 
 from core.control_mesh.embedding import Cell, EmbeddedCurve, embed
 from core.control_mesh.fit import ControlMesh
-from core.control_mesh.template import Template
-from core.document.lines import CustomLine
+from core.control_mesh.lower_template import LowerTemplate, read_lower_template
+from core.control_mesh.template import Template, read_template
+from core.document.lines import BUST, LOWER, CustomLine
 from core.errors import LineError
 from core.geometry.mesh import Flags
 from core.messages import LineName, Message
 
 HELP = (
-    "NAME=POINT,POINT,...[,closed][,shoulder]: a line of your own. A POINT is the number of a control point, "
+    "NAME=POINT,POINT,...[,closed][,shoulder][,lower][,continues OTHER]: a line of your own. A POINT is the number of a control point, "
     "or its place like r2c-3: row 2 from below, column 3 on the subject's right (c0 is the middle); "
     "r2c-3:r2c3 goes along a row or a column. control.csv lists them all. With fractions, like r2.35c-3.2, "
     "the line is free: it runs between control points, straight over each triangle. With shoulder it runs on "
-    "over the shoulder to the under-bust band. Set its length with --line NAME=LENGTH, else it is measured "
+    "over the shoulder to the under-bust band. With lower its rows, from above, and columns are those of the "
+    "lower trunk (c0 front, c11 back); one that continues a line of the bust is one band with it. Set its length with --line NAME=LENGTH, else it is measured "
     "only"
 )
 """What a user has to know to write an own line."""
@@ -34,54 +36,77 @@ DECIMALS = 4
 _NUMBER = r"\d+(?:\.\d+)?"
 _PLACE = re.compile(rf"r({_NUMBER})c([+-]?{_NUMBER})")
 _ASK = Message('Enter NAME=r2c-3,r3c0,r2c3 or NAME=28,45,34. Append ",closed" for a closed line.')
-_ENDINGS = ("closed", "shoulder")
+_ENDINGS = ("closed", "shoulder", LOWER)
+_CONTINUES = "continues "
+
+AnyTemplate = Template | LowerTemplate
+"""A template that own lines may be on."""
+
+
+def template_of(region: str, template: str) -> AnyTemplate:
+    """Return the template of a region; ``template`` is the name of that of the bust."""
+    return read_lower_template() if region == LOWER else read_template(template)
 
 
 def parse_line(text: str, template: Template) -> CustomLine:
-    """Read ``NAME=POINT,POINT,...`` and what follows on a template (ours). Raises LineError, see ``HELP``."""
+    """Read ``NAME=POINT,POINT,...`` and what follows on the ``template`` of the bust, or the lower one (ours).
+
+    Raises LineError, see ``HELP``.
+    """
     name, equals, path = text.replace("\N{MINUS SIGN}", "-").partition("=")
-    name, words = name.strip().lower(), path.lower().replace(" ", "").split(",")
-    endings = set()
-    while words and words[-1] in _ENDINGS:
-        endings.add(words.pop())
+    name, words = name.strip().lower(), [word.strip().lower() for word in path.split(",")]
+    endings, continued = set(), ""
+    while words and (words[-1] in _ENDINGS or words[-1].startswith(_CONTINUES)):
+        word = words.pop()
+        if word in _ENDINGS:
+            endings.add(word)
+        else:
+            continued = word.removeprefix(_CONTINUES).strip()
+    words = [word.replace(" ", "") for word in words]
     if not equals or not name or not words or not all(words):
         raise LineError(Message("'{text}' is not a line.", text=text), _ASK)
-    closed, shoulder = (ending in endings for ending in _ENDINGS)
+    closed, shoulder, lower = (ending in endings for ending in _ENDINGS)
+    on = read_lower_template() if lower else template
+    region = LOWER if lower else BUST
+    points: tuple[int, ...] = ()
+    places: tuple[Cell, ...] = ()
     if any(_between(word) for word in words):
-        places = tuple(place for word in words for place in _places(word, template))
-        return CustomLine(name, (), closed, places, shoulder)
-    points = [point for word in words for point in _walk(word, template)]
-    return CustomLine(name, tuple(points), closed, over_shoulder=shoulder)
+        places = tuple(place for word in words for place in _places(word, on))
+    else:
+        points = tuple(point for word in words for point in _walk(word, on))
+    return CustomLine(name, points, closed, places, shoulder, region, continued)
 
 
-def format_point(point: int, template: Template) -> str:
+def format_point(point: int, template: AnyTemplate) -> str:
     """Return how a control point is written: r2c-3."""
     return f"r{template.row[point]}c{template.column[point]}"
 
 
-def format_path(line: CustomLine, template: Template) -> str:
+def format_path(line: CustomLine, template: AnyTemplate) -> str:
     """Return how the course of a line is written, without its name: r2c-3,r2.35c-1.8,closed."""
     words = [format_point(point, template) for point in line.points]
     words += [f"r{_plain(row)}c{_plain(column)}" for row, column in line.places]
-    return ",".join([*words, *_ENDINGS[:1] * line.closed, *_ENDINGS[1:] * line.over_shoulder])
+    said = line.closed, line.over_shoulder, line.region == LOWER
+    words += [ending for ending, is_so in zip(_ENDINGS, said, strict=True) if is_so]
+    return ",".join([*words, *([_CONTINUES + line.continues] if line.continues else [])])
 
 
 def _plain(number: float) -> str:
     return f"{number:.{DECIMALS}f}".rstrip("0").rstrip(".")
 
 
-def mirrored(points: Sequence[int], template: Template) -> tuple[int, ...]:
+def mirrored(points: Sequence[int], template: AnyTemplate) -> tuple[int, ...]:
     """Return the control points of the other side, in the same order."""
-    return tuple(template.point(int(template.row[point]), -int(template.column[point])) for point in points)
+    return tuple(template.mirror[list(points)].tolist())
 
 
-def mirror_image(line: CustomLine, template: Template, name: str) -> CustomLine:
-    """Return a line with its mirror image on the other side, as ``name``."""
+def mirror_image(line: CustomLine, template: AnyTemplate, name: str) -> CustomLine:
+    """Return a line with its mirror image on the other side, as ``name``; it continues none."""
     points, places = mirrored(line.points, template), tuple((row, -column) for row, column in line.places)
-    return replace(line, name=name, points=points, places=places)
+    return replace(line, name=name, points=points, places=places, continues="")
 
 
-def path_cells(line: CustomLine, template: Template) -> tuple[Cell, ...]:
+def path_cells(line: CustomLine, template: AnyTemplate) -> tuple[Cell, ...]:
     """Return the course of a line by row and column; a closed line ends with where it begins."""
     path = tuple((float(template.row[point]), float(template.column[point])) for point in line.path)
     return line.grid_path or path
@@ -112,7 +137,7 @@ def with_custom_lines(control: ControlMesh, own: tuple[CustomLine, ...]) -> Cont
                 Message(
                     "The control mesh has rows 0 to {rows} and columns {low} to {high}.",
                     rows=control.grid.top,
-                    low=-control.grid.half,
+                    low=control.grid.first,
                     high=control.grid.half,
                 ),
             )
@@ -151,7 +176,7 @@ def _between(word: str) -> bool:
     return match is not None and any(not float(number).is_integer() for number in match.groups())
 
 
-def _places(word: str, template: Template) -> list[Cell]:
+def _places(word: str, template: AnyTemplate) -> list[Cell]:
     """Return the places of one word of a free line."""
     if not _between(word):
         return [(float(template.row[at]), float(template.column[at])) for at in _walk(word, template)]
@@ -163,7 +188,7 @@ def _places(word: str, template: Template) -> list[Cell]:
     return [place]
 
 
-def _walk(word: str, template: Template) -> list[int]:
+def _walk(word: str, template: AnyTemplate) -> list[int]:
     """Return the points of one word: one, or all from one to the other along a row or a column."""
     ends = [_point(each, template) for each in word.split(":")]
     if len(ends) == 1:
@@ -185,7 +210,7 @@ def _steps(start: int, end: int) -> range:
     return range(start, end + step, step)
 
 
-def _point(word: str, template: Template) -> int:
+def _point(word: str, template: AnyTemplate) -> int:
     """Return the number of the control point that a word names."""
     match = _PLACE.fullmatch(word)
     if match is None:
@@ -207,14 +232,14 @@ def _point(word: str, template: Template) -> int:
     return template.point(int(float(match[1])), int(float(match[2])))
 
 
-def _nowhere(word: str, template: Template) -> LineError:
+def _nowhere(word: str, template: AnyTemplate) -> LineError:
     return LineError(
         Message("The template {template} has no position '{word}'.", template=template.name, word=word),
         Message(
             "The control mesh has rows 0 to {rows} and columns {low} to {high}.",
-            rows=len(template.rows) - 1,
-            low=-template.half,
-            high=template.half,
+            rows=template.grid.top,
+            low=template.grid.first,
+            high=template.grid.half,
         ),
     )
 

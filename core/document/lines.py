@@ -13,6 +13,9 @@ from core.errors import LineError
 from core.mechanics.options import RANGES
 from core.messages import LineName, Message, length_of
 
+BUST, LOWER = "bust", "lower"
+"""The regions that a line may be in."""
+
 LONGEST_TITLE = 60
 """Letters of a line's title."""
 
@@ -40,8 +43,10 @@ class CustomLine:
 
     It runs through control points of the template, by number, or is a free line through ``places`` between
     them, by row and column of the template (``embedding``). One that goes ``over_shoulder`` runs on from
-    its upper end down the back to the under-bust band. Raises LineError if it has no name, does not go from
-    point to point, or is closed and goes over the shoulder.
+    its upper end down the back to the under-bust band. ``region`` tells whose template it is on: "bust" or
+    "lower". One of the lower trunk may be the part there of a line of the bust, which it ``continues``: both
+    are one band. Raises LineError if it has no name, does not go from point to point, or is closed and goes
+    over the shoulder.
     """
 
     name: str
@@ -49,8 +54,11 @@ class CustomLine:
     closed: bool = False
     places: tuple[Cell, ...] = ()
     over_shoulder: bool = False
+    region: str = BUST
+    continues: str = ""
 
     def __post_init__(self) -> None:
+        self._check_region()
         if is_blank(self.name):
             raise LineError(Message("A line has no name."), Message("Give each line a unique name."))
         check_line_name(self.name)
@@ -75,6 +83,23 @@ class CustomLine:
                     "The line {line} is closed and cannot run over the shoulder.", line=LineName(self.name)
                 ),
                 Message("Leave the ends of the line open."),
+            )
+
+    def _check_region(self) -> None:
+        if self.region not in (BUST, LOWER):
+            raise LineError(
+                Message("'{text}' is not a region.", text=self.region),
+                Message("Choose one of: {choices}.", choices=f"{BUST}, {LOWER}"),
+            )
+        if self.region == LOWER and self.over_shoulder:
+            raise LineError(
+                Message("The line {line} is below the bust.", line=LineName(self.name)),
+                Message("Only lines of the bust run over the shoulder."),
+            )
+        if self.continues and (self.region != LOWER or self.closed):
+            raise LineError(
+                Message("The line {line} cannot continue another line.", line=LineName(self.name)),
+                Message("Choose an open line below the bust."),
             )
 
     @property

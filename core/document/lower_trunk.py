@@ -10,8 +10,7 @@ from types import MappingProxyType
 from core.control_mesh.lower_template import read_lower_template
 from core.document.document_limits import check_numbers
 from core.document.lines import ActiveLine, LineSettings
-from core.errors import LineError
-from core.messages import LineName, Message, SettingName
+from core.messages import SettingName
 
 LOWER_RANGES: Mapping[str, tuple[float, float]] = MappingProxyType(
     {
@@ -47,7 +46,7 @@ class LowerTrunk:
     ``belly_height`` [1] is where the belly row runs from waist (0) to hip (1). ``firmness`` [1] ties skin to
     bone, the more the thinner the tissue: 0 not at all. ``waist_kept`` [1] is how much of the volume that
     lines displace at the waist stays under the skin there; the rest goes inward. ``stiffness`` [N/m] of the
-    tissue tells what forces are in newtons. Raises UserError for what cannot be.
+    tissue tells what forces are in newtons. Raises UserError for a number that cannot be.
     """
 
     lines: tuple[ActiveLine, ...] = ()
@@ -64,12 +63,6 @@ class LowerTrunk:
             "waist_kept": SettingName("volume kept at the waist"),
             "stiffness": SettingName("tissue stiffness of the lower trunk"),
         }
-        named = {line.name for line in self.lines} | {traits.name for traits in self.traits}
-        for name in sorted(named - lower_line_names()):
-            raise LineError(
-                Message("There is no line '{line}'.", line=LineName(name)),
-                Message("Available lines: {lines}.", lines=", ".join(sorted(lower_line_names()))),
-            )
         check_numbers((getattr(self, key), *limits, names[key]) for key, limits in LOWER_RANGES.items())
 
 

@@ -12,6 +12,7 @@ from core.document.document import Document
 from core.document.document_limits import LARGEST_UNKNOWN, check_nesting, check_values
 from core.document.elastic import TISSUE_STIFFNESS
 from core.document.json_values import field_of, parsed, whole_number
+from core.document.lines import BUST, LOWER
 from core.errors import ProjectError, UserError
 from core.messages import Message
 from core.scan.source import UNEDITED
@@ -45,9 +46,11 @@ def to_values(design: Design, written: int = 1) -> dict[str, Any]:
         if not traits["elastic"]:
             del traits["elastic"]
     for line in values["own_lines"]:
-        for key in ("places", "over_shoulder"):
+        for key in ("places", "over_shoulder", "continues"):
             if not line[key]:
                 del line[key]
+        if line["region"] == BUST:
+            del line["region"]
     if not design.elastics:
         del values["elastics"]
     if design.scan.edits == UNEDITED:
@@ -63,7 +66,7 @@ def to_values(design: Design, written: int = 1) -> dict[str, Any]:
 def _format_of(design: Design) -> int:
     """Return the oldest format that holds a design: an older program would drop what it does not know."""
     needed = (
-        (WITH_LOWER_TRUNK, design.lower is not None),
+        (WITH_LOWER_TRUNK, design.lower is not None or bool(design.lines_of(LOWER))),
         (WITH_EDITS, design.scan.edits != UNEDITED),
         (WITH_FREE_LINES, any(line.free or line.over_shoulder for line in design.own_lines)),
         (WITH_ELASTICS, bool(design.elastics)),

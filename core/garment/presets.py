@@ -16,8 +16,8 @@ from core.control_mesh.template import Template, read_template
 from core.document.cup import Cup
 from core.document.design import Design, ScanSource
 from core.document.json_values import value_of
-from core.document.line_notation import format_path, parse_line, ready_made_lines
-from core.document.lines import LONGEST_TITLE, CustomLine, LineSettings
+from core.document.line_notation import format_path, parse_line, ready_made_lines, template_of
+from core.document.lines import BUST, LONGEST_TITLE, LOWER, CustomLine, LineSettings
 from core.document.lower_trunk import LowerTrunk, lower_lines_of
 from core.document.printable_name import is_blank, is_printable
 from core.document.storage.project_file import safe_name
@@ -57,6 +57,13 @@ class PresetLine:
     linked: bool = True
     elastic: str = ""
 
+    @property
+    def is_below(self) -> bool:
+        """Return whether it is a line of the lower trunk."""
+        if self.places:
+            return LOWER in (word.strip().lower() for word in self.places.split(","))
+        return bool(lower_lines_of(self.line))
+
 
 @dataclass(frozen=True)
 class Preset:
@@ -83,13 +90,13 @@ class Preset:
     @property
     def is_for_bust(self) -> bool:
         """Return whether it says what is worn on the bust."""
-        of_bust = any(each.places or not lower_lines_of(each.line) for each in self.lines)
+        of_bust = any(not each.is_below for each in self.lines)
         return of_bust or self.cup is not None
 
     @property
     def is_for_lower_trunk(self) -> bool:
         """Return whether it says what is worn on the lower trunk."""
-        return any(not each.places and lower_lines_of(each.line) for each in self.lines)
+        return any(each.is_below for each in self.lines)
 
     def lines_on_template(self, template: Template) -> Iterator[tuple[PresetLine, tuple[CustomLine, ...]]]:
         """Yield each line with the own lines that it is, none for one of the template. Raises LineError."""
@@ -229,7 +236,6 @@ def _as_values(preset: Preset) -> dict[str, Any]:
 
 def preset_from(design: Design, title: str) -> Preset:
     """Return the lines of a design as a preset: those that are worn, and all own ones."""
-    template = read_template(design.template)
     own = {line.name: line for line in design.own_lines}
     known = library()
     if strange := [each for each in design.active_elastics().values() if known.get(each.name) != each]:
@@ -237,9 +243,9 @@ def preset_from(design: Design, title: str) -> Preset:
             Message("The elastic {name} is not in the library.", name=ElasticName(strange[0].name)),
             Message("Save it in the library first, or choose another elastic."),
         )
-    below = () if design.lower is None else sorted(design.lower_design.active_lines())
+    below = () if design.lower is None else sorted(design.lower_design.active_lines() - own.keys())
     names = [*sorted(design.active_lines() - own.keys()), *own, *below]
-    lines = tuple(_as_preset(name, design, own.get(name), template) for name in names)
+    lines = tuple(_as_preset(name, design, own.get(name)) for name in names)
     if not lines:
         raise LineError(
             Message("The design has no lines to save as a preset."),
@@ -247,12 +253,14 @@ def preset_from(design: Design, title: str) -> Preset:
         )
     # Lengths of elastics, and cups, mean something on the tissue that they were chosen on.
     tissue = design.tissue if design.active_elastics() or design.cup else ""
-    return Preset(title, lines, template=design.template if own else "", tissue=tissue, cup=design.cup)
+    return Preset(
+        title, lines, template=design.template if design.lines_of(BUST) else "", tissue=tissue, cup=design.cup
+    )
 
 
-def _as_preset(name: str, design: Design, line: CustomLine | None, template: Template) -> PresetLine:
+def _as_preset(name: str, design: Design, line: CustomLine | None) -> PresetLine:
     traits = design.line_settings(name)
-    places = "" if line is None else format_path(line, template)
+    places = "" if line is None else format_path(line, template_of(line.region, design.template))
     worn = name in design.all_active_lines()
     length = design.ratio(name) if worn else None
     elastic = traits.elastic if worn else ""
@@ -309,8 +317,9 @@ def is_active(design: Design, preset: Preset) -> bool:
             return False
         if line.length is not None:
             wanted.update(_names(line, own))
-    worn = {name for region in design.regions for name in region.active_lines()}
-    of_preset = {name for name in worn if lower_lines_of(name)} if preset.is_for_lower_trunk else set()
+    of_preset: set[str] = set()
+    if preset.is_for_lower_trunk and design.lower is not None:
+        of_preset |= design.lower_design.active_lines()
     if preset.is_for_bust:
         of_preset |= design.active_lines()
         if not _has_cups_and_elastics(design, preset):

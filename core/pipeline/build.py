@@ -20,6 +20,7 @@ from core.deformation.incremental_normals import moving_faces
 from core.document.cup import Cup
 from core.document.design import Design, ScanSource
 from core.document.line_notation import with_custom_lines
+from core.document.lines import BUST
 from core.document.storage.project_file import ScanFile, read_scan_file
 from core.errors import FitError, LandmarkError, LineError, TissueError, UserError
 from core.geometry.mesh import Mesh, Points, frozen
@@ -99,7 +100,7 @@ class Stages(RegionStages):
     def region_of(self, name: str) -> RegionStages:
         """Return the stages of the region that a line belongs to."""
         lower = self.lower
-        return lower if lower is not None and name in lower.control.paths else self
+        return lower if lower is not None and name in lower.control.line_names else self
 
     @property
     def lines(self) -> tuple[Line, ...]:
@@ -216,10 +217,11 @@ def _stages(
     moving = stage("prepare normals", moving_faces, body.mesh, binding.moving, middle)
     watch = stage("watch body", BodyObservables, binding, control, landmarks)
     backs = stage("measure bands", _backs, body, control)
-    laid = stage("lay own lines", with_custom_lines, fitted, design.own_lines)
+    own = design.lines_of(BUST)
+    laid = stage("lay own lines", with_custom_lines, fitted, own)
     if tissue is not None:
         laid = stage("halve own lines", halved, laid, body.smoothed)
-    tails = stage("lead straps", strap_tails, body.mesh, laid, design.own_lines, backs)
+    tails = stage("lead straps", strap_tails, body.mesh, laid, own, backs)
     routes = stage("trace lines", line_routes, body.mesh, laid, backs, tails)
     lengths = _lengths(backs), _lengths(tails)
     solid = None

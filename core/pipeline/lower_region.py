@@ -13,6 +13,7 @@ from core.control_mesh.lower_template import LowerTemplate, read_lower_template
 from core.deformation.blend_region import blend_weights
 from core.deformation.incremental_normals import moving_faces
 from core.document.design import Design
+from core.document.line_notation import with_custom_lines
 from core.document.lower_trunk import LowerTrunk
 from core.errors import FitError, LandmarkError, UserError
 from core.geometry.mesh import Points, frozen
@@ -61,13 +62,14 @@ def lower_stages(
     fitted = stage("fit lower mesh", _fitted, template, body, landmarks, bust, upper, lower.belly_height)
     if isinstance(fitted, UserError):
         return fitted
-    control = stage("keep lower volumes", _keeping, fitted, lower.waist_kept)
+    kept = stage("keep lower volumes", _keeping, fitted, lower.waist_kept)
     patch = stage("find lower patch", blend_weights, body.mesh, fitted)
     weights = design.weights, design.scaled_normals
     binding = stage("bind lower body", bound, body.mesh, fitted, patch.fade, *weights, None)
     middle = float(fitted.mesh.vertices[fitted.border_points, 0].mean())
     moving = stage("prepare lower normals", moving_faces, body.mesh, binding.moving, middle)
-    routes = stage("trace lower lines", line_routes, body.mesh, fitted, {}, {})
+    control = stage("lay own lower lines", with_custom_lines, kept, design.own_lines)
+    routes = stage("trace lower lines", line_routes, body.mesh, control, {}, {})
     model, balance, limit = model_stages(stage, "lower ", design, control, ({}, {}))
     made = control, fitted, patch, binding, moving
     return LowerStages(
