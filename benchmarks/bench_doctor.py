@@ -64,7 +64,7 @@ def drawn(rng: np.random.Generator, stages: Stages) -> Stages:
         moving = [line.name for line in stages.model.lines if line.constrains]
         for name in rng.choice(moving, rng.integers(1, len(moving) + 1), replace=False).tolist():
             design = design.with_line(name, 1.0)
-    for names in dict.fromkeys(design.linked_pair(name) for name in sorted(design.active_lines())):
+    for names in dict.fromkeys(design.linked_lines(name) for name in sorted(design.active_lines())):
         ratio = round(float(rng.uniform(0.55, 1.12) if rng.random() < 0.6 else rng.uniform(0.85, 1.0)), 3)
         for name in names:
             design = design.with_line(name, ratio)

@@ -237,7 +237,7 @@ def groups(stages: Stages) -> Iterator[tuple[str, ...]]:
     """Yield the sliders: lines that move anything, linked ones together."""
     seen: set[str] = set()
     for line in stages.model.lines:
-        group = stages.design.linked_pair(line.name)
+        group = stages.design.linked_lines(line.name)
         if line.constrains and not seen & set(group):
             seen |= set(group)
             yield group

@@ -48,9 +48,9 @@ def apply_lines(design: Design, lines: Sequence[Line], requests: Sequence[str]) 
                 Message("Enter NAME=LENGTH. Lines: {names}.", names=", ".join(known)),
             )
         for name in names:
-            line = known[name]
-            ratio = length_ratio(text, name, line.rest_length, line.whole_length)
-            design = design.with_line(name, ratio)
+            band = [known[each] for each in design.band_of(name)]
+            rest, whole = (sum(line.rest_length for line in band), sum(line.whole_length for line in band))
+            design = design.with_line(name, length_ratio(text, name, rest, whole))
     return design
 
 
@@ -66,7 +66,7 @@ def apply_elastics(design: Design, requests: Sequence[str]) -> Design:
                 Message("Enter LINE=ELASTIC. Active lines: {active}.", active=", ".join(active) or "none"),
             )
         chosen = read_elastic(Path(elastic)) if elastic.lower().endswith(".csv") else find_elastic(elastic)
-        for name in names:
+        for name in dict.fromkeys(part for each in names for part in design.band_of(each)):
             design = design.with_elastic(name, chosen)
     return design
 

@@ -113,7 +113,7 @@ def _effect_of(stages: Stages, rigid: Stages) -> tuple[str, ...]:
 def _with_next_step(problem: ElasticError, rigid: Stages, requested: Design, mode: str) -> LineError:
     """Return the problem of an elastic with the nearest one that works for its line."""
     wanted = requested.active_elastics()[problem.line]
-    names = rigid.design.linked_pair(problem.line)
+    names = rigid.design.linked_lines(problem.line)
     try:
         options = [elastic_option(rigid, names, each, mode) for each in (wanted, *library().values())]
     except LineError:

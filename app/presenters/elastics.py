@@ -126,7 +126,7 @@ def choice_view(
     rows = [outcome.rows[name] for name in names if name in outcome.rows]
     far, usable = any(row.far for row in rows), option.outcome is not None
     stretch = [row.elongation for row in rows if row.elongation is not None]
-    one = rows[0] if rows and set(names) <= set(design.linked_pair(names[0])) else None
+    one = rows[0] if rows and set(names) <= set(design.linked_lines(names[0])) else None
     name = one.line if one is not None else ""
     kpa = max((outcome.kpa[each] for each in names if each in outcome.kpa), default=None)
     light = "" if kpa is None else pressure_limits().rating(kpa)

@@ -15,7 +15,7 @@ from core.control_mesh.embedding import embed
 from core.control_mesh.straps import Tail
 from core.control_mesh.template import Template, read_template
 from core.document.design import Design
-from core.document.lines import partner_of
+from core.document.lines import BUST, partner_of
 from core.document.lower_trunk import GROUPS, line_group
 from core.document.split_lines import can_split, is_split
 from core.mechanics.constraint_lines import Line
@@ -61,13 +61,13 @@ def pair_title(name: str, design: Design) -> str:
 
 def row_title(name: str, design: Design) -> str:
     """Return what the row of a line is called: that of its pair if it is linked."""
-    return pair_title(name, design) if len(design.linked_pair(name)) > 1 else line_title(name, design)
+    return pair_title(name, design) if len(design.linked_lines(name)) > 1 else line_title(name, design)
 
 
 def told_title(name: str, design: Design) -> str:
     """Return what the row of a line is called where others follow: "Mid-bust (left)", "Straps"."""
     side = side_of(name)
-    if not side or len(design.linked_pair(name)) > 1:
+    if not side or len(design.linked_lines(name)) > 1:
         return row_title(name, design)
     kind = kind_of(name)
     titles = {"strap": tr("Strap"), "sling": tr("Sling"), "oblique": tr("Oblique"), "ring": tr("Ring")}
@@ -102,14 +102,14 @@ def _by_group(name: str) -> int:
 def line_views(
     design: Design, frame: Frame, hidden: Collection[str], leeways: Mapping[str, Shown] | None = None
 ) -> list[LineView]:
-    """Return the rows of the list, top line first, then own lines; a linked pair is one row.
+    """Return the rows of the list, top line first, then own lines; linked lines are one row.
 
-    Those of the lower trunk follow, from above, if there is that region.
+    Those of the lower trunk follow, from above, if there is that region; own ones last in each group.
     """
     lines = {line.name: line for line in frame.stages.lines}
     rows = []
     for name, colour in line_colours(lines, design).items():
-        pair = tuple(each for each in sorted(design.linked_pair(name)) if each in lines)
+        pair = tuple(each for each in design.linked_lines(name) if each in lines)
         if name == pair[0]:
             view = _view(design, frame, [lines[each] for each in pair], colour)
             leeway, stale = (leeways or {}).get(name, (None, False))
@@ -117,16 +117,19 @@ def line_views(
             # Of a line that lies under its own halves no length is worth trying.
             leeway = None if view.parted else leeway
             rows.append(replace(view, visible=visible, leeway=leeway, stale=stale))
-    return rows
+    order = ("bust", *GROUPS)
+    return sorted(rows, key=lambda row: (order.index(row.group), row.group != "bust" and row.own))
 
 
 def _view(design: Design, frame: Frame, lines: list[Line], colour: str) -> LineView:
-    """Return the row of a line, or of a linked pair whose lengths are the mean of both."""
+    """Return the row of a line, or of linked ones: lengths of whole bands, of a pair the mean of both."""
     name, traits = lines[0].name, design.line_settings(lines[0].name)
     tail = frame.stages.tails.get(name)
     own = {each.name for each in design.own_lines}
-    lengths, group = frame.line_lengths, line_group(name)
-    sides = [SideView(side_of(line.name), line.rest_length, lengths[line.name]) for line in lines]
+    group = design.line_group(name)
+    bands = [[line for line in lines if line.name in design.band_of(each.name)] for each in lines]
+    bands = [band for at, band in enumerate(bands) if band not in bands[:at]]
+    sides = [_side(band, frame) for band in bands]
     partner = partner_of(name) if partner_of(name) in own or (group != "bust" and partner_of(name)) else ""
     return LineView(
         name,
@@ -134,10 +137,10 @@ def _view(design: Design, frame: Frame, lines: list[Line], colour: str) -> LineV
         colour,
         design.ratio(name),
         sum(side.rest_mm for side in sides) / len(sides),
-        sum(lengths[line.name] for line in lines) / len(lines),
+        sum(frame.line_lengths[line.name] for line in lines) / len(sides),
         any(line.constrains for line in lines),
         True,
-        sum(line.whole_length for line in lines) / len(lines),
+        sum(line.whole_length for line in lines) / len(sides),
         name in own,
         partner=partner,
         sides=tuple(sides) if len(sides) > 1 else (),
@@ -146,7 +149,7 @@ def _view(design: Design, frame: Frame, lines: list[Line], colour: str) -> LineV
         width_mm=band_width(name, design),
         stiffness=traits.stiffness,
         usual_stiffness=design.line_stiffness,
-        apart=name[len(kind_of(name)) + 1 :] if partner and len(lines) == 1 else "",
+        apart=name[len(kind_of(name)) + 1 :] if partner and len(sides) == 1 else "",
         pair_title=pair_title(name, design),
         elastic=elastic_title(traits.elastic),
         splits=not partner and can_split(design, _template(design.template), name),
@@ -156,7 +159,14 @@ def _view(design: Design, frame: Frame, lines: list[Line], colour: str) -> LineV
         group=group,
         whole_band=group != "bust" and lines[0].closed,
         worn=any(line.name in design.all_active_lines() for line in lines),
+        below=tuple(part.name for band in bands for part in band[1:]),
     )
+
+
+def _side(band: list[Line], frame: Frame) -> SideView:
+    """Return one side of a row; the length of a band is that of all its parts."""
+    rest = sum(line.rest_length for line in band)
+    return SideView(side_of(band[0].name), rest, sum(frame.line_lengths[line.name] for line in band))
 
 
 def _over_shoulder(design: Design, frame: Frame, name: str) -> bool | None:
@@ -165,7 +175,7 @@ def _over_shoulder(design: Design, frame: Frame, name: str) -> bool | None:
     It can where its upper end is on the fixed body above the bust.
     """
     own = next((each for each in design.own_lines if each.name == name), None)
-    if own is None or own.closed:
+    if own is None or own.closed or own.region != BUST:
         return None
     if own.over_shoulder:
         return True
@@ -226,7 +236,7 @@ class LineView:
     ``over_shoulder``: whether it does, None for a line that cannot.
     ``width_mm`` is that of its band; ``stiffness`` [1] its own, or None for the ``usual_stiffness``.
     ``group`` is where the garment has it, "bust" or one of ``lower_trunk.GROUPS``; ``worn`` whether it acts.
-    A ``whole_band`` is closed without a back that stays.
+    A ``whole_band`` is closed without a back that stays. ``below`` are the parts of it below the bust.
     """
 
     name: str
@@ -261,11 +271,12 @@ class LineView:
     group: str = "bust"
     whole_band: bool = False
     worn: bool = True
+    below: tuple[str, ...] = ()
 
     @property
     def names(self) -> tuple[str, ...]:
         """Return the lines that this row stands for."""
-        return (self.name, self.partner) if self.sides else (self.name,)
+        return (self.name, *([self.partner] if self.sides else []), *self.below)
 
     @property
     def settable(self) -> bool:

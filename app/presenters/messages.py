@@ -77,6 +77,8 @@ def line_title(name: str, design: Design | None = None) -> str:
     own = design.line_settings(name).title if design else ""
     if own:
         return _with_side(own, name)
+    if design is not None and (upper := design.band_of(name)[0]) != name:
+        return tr("{line}, below the bust").format(line=line_title(upper, design))
     titles = {
         "full-bust": tr("Full bust"),
         "mid-bust": tr("Mid-bust"),

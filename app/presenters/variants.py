@@ -85,9 +85,9 @@ def _lengths(variants: Variants) -> list[VariantRow]:
     heads: dict[str, str] = {}
     for (_, design, _), rest in zip(variants, rests, strict=True):
         for name in rest:
-            if name == min(design.linked_pair(name)):
+            if name == design.linked_lines(name)[0]:
                 heads.setdefault(name, row_title(name, design))
-            elif name in heads or len(design.linked_pair(name)) == 1:
+            elif name in heads or len(design.linked_lines(name)) == 1:
                 heads[name] = line_title(name, design)
     rows = []
     elastic = {name for _, design, _ in variants for name in design.active_elastics()}

@@ -33,7 +33,7 @@ RING = 13
 RULES = (
     *("underbust", "ribs", "between", "waist", "down", "belly", "down", "hip", "low", "fold", "leg", "leg"),
 )
-BELLY_ROW, HIP_ROW, FOLD_ROW = 5, 7, 9
+BELLY_ROW, HIGH_HIP_ROW, HIP_ROW, FOLD_ROW = 5, 6, 7, 9
 CROTCH = "crotch"
 
 _LEG_COLUMNS = (HALF, 0, *range(1, HALF), HALF)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, fields, replace
 from functools import cached_property, reduce
 from typing import Any
 
+from core.control_mesh.lower_template import HIGH_HIP_ROW, read_lower_template
 from core.document.calibration_record import Calibration
 from core.document.cup import Cup
 from core.document.custom_measures import WORN_TIGHT, CustomMeasurement, check_customer, with_measurement
@@ -23,7 +24,7 @@ from core.document.document_limits import (
 )
 from core.document.elastic import TISSUE_LIMITS, TISSUE_STIFFNESS, Elastic, check_elastics
 from core.document.lines import BUST, LOWER, ActiveLine, CustomLine, LineSettings, partner_of
-from core.document.lower_trunk import LOWER_SETTINGS, LowerTrunk, lower_line_names
+from core.document.lower_trunk import LOWER_SETTINGS, LowerTrunk, line_group, lower_line_names
 from core.document.printable_name import repeated
 from core.errors import LandmarkError, LineError, UserError
 from core.landmarks.manual import PlacedMark
@@ -48,10 +49,10 @@ class Design:
     force; None stands for 0.97 of the limit at which it starts to vibrate at rest. ``scaled_normals`` lets
     what stands off the control mesh grow with it; ``dense_volume`` lets the exact answer hold the volume of
     the body itself and not that of the control mesh. For the choices of the model see ``options``.
-    ``own_lines`` are lines beside those of the templates of all regions, ``traits`` how lines are treated where that is
-    not as usual, ``placed`` the landmarks that were placed by hand, ``own_measures`` what is measured beside
-    the usual, ``elastics`` those that lines are made of, with their curves, so that a project opens
-    elsewhere. ``tissue_stiffness`` [N/m] tells what the model's forces are in newtons, an estimate (see
+    ``own_lines`` are lines beside those of the templates of all regions, ``traits`` how lines are treated
+    where that is not as usual, ``placed`` the landmarks that were placed by hand, ``own_measures`` what is
+    measured beside the usual, ``elastics`` those that lines are made of, with their curves, so that a project
+    opens elsewhere. ``tissue_stiffness`` [N/m] tells what the model's forces are in newtons, an estimate (see
     docs/explanation/forces.md). ``customer`` is whom it is for, in whatever words, ``worn_tight_mm`` what
     her sizes take off the under-bust. ``calibration`` names the scan with the garment on that its numbers
     come from, if any. ``cup`` is what both breasts are worn in, if anything. ``lower`` adds the region below
@@ -389,20 +390,23 @@ class Design:
 
     def band_of(self, name: str) -> tuple[str, ...]:
         """Return the parts of the band that a line belongs to: one in each region that it runs over."""
-        upper = next((each.continues for each in self.own_lines if each.name == name), "") or name
+        own = {each.name: each.continues for each in self.own_lines}
+        upper = own[name] if own.get(name) in own else name
         return (upper, *(each.name for each in self.own_lines if each.continues == upper))
 
-    def linked_pair(self, name: str) -> tuple[str, ...]:
-        """Return the line ``name``, the other part of its band, and those of the other side if it is linked.
+    def linked_lines(self, name: str) -> tuple[str, ...]:
+        """Return the lines that share length and lock with the line ``name``, those of the bust first.
 
-        They share length and lock.
+        They are the parts of its band, and those of the other side if it is linked.
         """
         band, partner = self.band_of(name), partner_of(name)
         sides = [self.line_settings(each) for each in (name, partner)]
         paired = {line.name for line in self.own_lines} | lower_line_names()
         both = partner in paired and all(side.linked for side in sides)
         alike = sides[0].locked == sides[1].locked and self.ratio(name) == self.ratio(partner)
-        return (*band, *self.band_of(partner)) if both and alike else band
+        names = (*band, *self.band_of(partner)) if both and alike else band
+        below = {line.name for line in self.lines_of(LOWER)}
+        return tuple(sorted(names, key=lambda each: (each in below, each)))
 
     def with_link(self, name: str) -> Design:
         """Return the design with a line linked to its partner, which takes its length; a lock is for both.
@@ -438,9 +442,15 @@ class Design:
         return replace(self, own_measures=tuple(each for each in self.own_measures if each.name != name))
 
     def with_line(self, name: str, ratio: float | None) -> Design:
-        """Return the design with a line at ``ratio``, or off (None). Raises LineError if it is locked."""
+        """Return the design with the band of a line at ``ratio``, or off (None).
+
+        Raises LineError if it is locked.
+        """
+        return reduce(lambda design, each: design._with_part(each, ratio), self.band_of(name), self)
+
+    def _with_part(self, name: str, ratio: float | None) -> Design:
         if (region := self.region_of(name)) is not self:
-            return self._with_region(region.with_line(name, ratio))
+            return self._with_region(region._with_part(name, ratio))
         if ratio != (self.ratio(name) if name in self.active_lines() else None):
             self._check_unlocked(name)
         others = [line for line in self.lines if line.name != name]
@@ -449,7 +459,7 @@ class Design:
 
     def with_linked(self, name: str, ratio: float | None) -> Design:
         """Return the design with a line and its linked partner at ``ratio``. Raises LineError if locked."""
-        return reduce(lambda design, each: design.with_line(each, ratio), self.linked_pair(name), self)
+        return reduce(lambda design, each: design.with_line(each, ratio), self.linked_lines(name), self)
 
     def with_lines_reset(self) -> Design:
         """Return the design with every line taken off that is not locked, in all regions."""
@@ -457,14 +467,25 @@ class Design:
 
     def with_bust_lines_reset(self) -> Design:
         """Return the design with every line of the bust taken off that is not locked."""
-        kept = tuple(line for line in self.lines if self.line_settings(line.name).locked)
-        return replace(self, lines=kept)
+        return self._without(self.active_lines())
 
     def with_lower_lines_reset(self) -> Design:
         """Return the design with every line of the lower trunk taken off that is not locked."""
-        if self.lower is None:
-            return self
-        return self._with_region(self.lower_design.with_bust_lines_reset())
+        return self if self.lower is None else self._without(self.lower_design.active_lines())
+
+    def _without(self, names: Collection[str]) -> Design:
+        loose = [name for name in sorted(names) if not self.line_settings(name).locked]
+        return reduce(lambda design, name: design.with_line(name, None), loose, self)
+
+    def line_group(self, name: str) -> str:
+        """Return where a garment has a line: "bust", or one of ``lower_trunk.GROUPS``."""
+        own = next((line for line in self.own_lines if line.name == name), None)
+        if own is None or own.region == BUST:
+            return line_group(name)
+        if own.continues:
+            return BUST
+        rows = [row for row, _ in own.places] or [float(read_lower_template().row[at]) for at in own.points]
+        return "waist" if sum(rows) / len(rows) < HIGH_HIP_ROW else "seat"
 
     def _check_unlocked(self, name: str) -> None:
         if self.line_settings(name).locked:

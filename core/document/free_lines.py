@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from core.control_mesh.embedding import Cell, embed, locate_on_grid
+from core.control_mesh.embedding import Cell, embed
 from core.control_mesh.fit import ControlMesh
 from core.control_mesh.path_snapping import STEP, max_deviation
-from core.control_mesh.skin_projection import SurfaceProjector, locate_on_mesh, points_on_skin
+from core.control_mesh.skin_projection import locate_on_mesh, points_on_skin
 from core.document.line_notation import DECIMALS
-from core.document.lines import BUST, LOWER
 from core.errors import LineError
-from core.geometry.mesh import Flags, Floats, Mesh, Points
+from core.geometry.mesh import Floats, Mesh, Points
 from core.geometry.plane_sections import resample
 from core.messages import Message
 
@@ -24,9 +23,6 @@ _STEPS = (6.0, 3.0, 1.5)
 HANGS = 0.05
 """A vertex hangs on control points that can move if their weights are more than this together [1]."""
 
-_FINE = 2.0  # a curve is assigned to regions in steps of this length [mm]
-_TIE = 2.0  # a place is in both regions if it is as near to both meshes as this [mm]
-_FAR = 15.0  # a curve that is so much nearer to the other mesh has come back to it [mm]
 _KEPT = 0.5  # a line this near to the curve that was drawn keeps it [mm]
 
 
@@ -62,81 +58,6 @@ def free_curve(skin: Mesh, control: ControlMesh, pieces: Sequence[Points], close
         if found.deviation < _KEPT:
             break
     return found
-
-
-def parts_by_region(
-    meshes: Mapping[str, ControlMesh], pieces: Sequence[Points], closed: bool = False
-) -> dict[str, list[Points]]:
-    """Return the part of a curve that is laid in each region, in ``pieces`` (k, 3) [mm] from bend to bend.
-
-    A curve that could pull in both regions is cut where it leaves the control mesh of the bust; any other is
-    all in the region where more of it can pull, or is. ``closed`` ones are not cut. Raises LineError for a
-    curve that goes to and fro between regions.
-    """
-    if len(meshes) == 1:
-        return dict.fromkeys(meshes, list(pieces))
-    fine = [resample(piece, _FINE) if len(piece) > 1 else piece for piece in pieces]
-    curve = np.concatenate(fine)
-    off = {region: _distances(control.mesh, curve) for region, control in meshes.items()}
-    nearer = off[BUST] - off[LOWER]
-    owned = {BUST: nearer < _TIE, LOWER: nearer > -_TIE}
-    pulling = {region: owned[region] & _movable(control, curve) for region, control in meshes.items()}
-    if closed or not all(pulls.any() for pulls in pulling.values()):
-        most = max(meshes, key=lambda region: (pulling[region].sum(), owned[region].sum()))
-        return {most: list(pieces)}
-    at, order = _best_cut(nearer)
-    first, last = _cut(fine, at)
-    return dict(zip(order, (first, last), strict=True))
-
-
-def _best_cut(nearer: Floats) -> tuple[int, tuple[str, str]]:
-    """Return where a curve is cut best between two regions, and the regions of both parts in order.
-
-    ``nearer`` (k,) [mm] is how much nearer each of its points is to the mesh below than to that of the bust.
-    Raises LineError if a part of it is far away on the wrong side.
-    """
-    before = np.concatenate([[0.0], np.cumsum(nearer)])
-    at = {True: int(before.argmin()), False: int(before.argmax())}  # beginning on the bust, or below
-    from_bust = (
-        before[at[True]] - (before[-1] - before[at[True]])
-        < (before[-1] - before[at[False]]) - (before[at[False]])
-    )
-    cut = at[bool(from_bust)]
-    sign = 1.0 if from_bust else -1.0
-    if max((sign * nearer[:cut]).max(initial=0.0), (-sign * nearer[cut:]).max(initial=0.0)) > _FAR:
-        raise LineError(
-            Message("The line crosses between bust and waist more than once."),
-            Message("Draw a separate line for each part."),
-        )
-    return cut, (BUST, LOWER) if from_bust else (LOWER, BUST)
-
-
-def _distances(mesh: Mesh, points: Points) -> Floats:
-    """Return how far places, (k, 3) [mm], are from a mesh, (k,) [mm]."""
-    return np.asarray(np.linalg.norm(SurfaceProjector(mesh).project(points) - points, axis=1))
-
-
-def _movable(control: ControlMesh, points: Points) -> Flags:
-    """Return which places of the skin, (k, 3) [mm], hang on free points of a control mesh, (k,)."""
-    found = locate_on_mesh(control.mesh, control.grid, points)
-    corners, weights = locate_on_grid(control.grid, found.cells)
-    return np.asarray(found.inside & ((weights * ~control.fixed[corners]).sum(axis=1) > HANGS))
-
-
-def _cut(pieces: Sequence[Points], at: int) -> tuple[list[Points], list[Points]]:
-    """Return the pieces of a curve up to its point ``at``, counted through all pieces, and those from it."""
-    first: list[Points] = []
-    last: list[Points] = []
-    for piece in pieces:
-        if at >= len(piece):
-            first.append(piece)
-        elif at <= 0:
-            last.append(piece)
-        else:
-            first.append(piece[: at + 1])
-            last.append(piece[at:])
-        at -= len(piece)
-    return [each for each in first if len(each) > 1], [each for each in last if len(each) > 1]
 
 
 def _curve(

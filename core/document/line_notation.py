@@ -20,13 +20,13 @@ from core.geometry.mesh import Flags
 from core.messages import LineName, Message
 
 HELP = (
-    "NAME=POINT,POINT,...[,closed][,shoulder][,lower][,continues OTHER]: a line of your own. A POINT is the number of a control point, "
-    "or its place like r2c-3: row 2 from below, column 3 on the subject's right (c0 is the middle); "
-    "r2c-3:r2c3 goes along a row or a column. control.csv lists them all. With fractions, like r2.35c-3.2, "
-    "the line is free: it runs between control points, straight over each triangle. With shoulder it runs on "
-    "over the shoulder to the under-bust band. With lower its rows, from above, and columns are those of the "
-    "lower trunk (c0 front, c11 back); one that continues a line of the bust is one band with it. Set its length with --line NAME=LENGTH, else it is measured "
-    "only"
+    "NAME=POINT,POINT,...[,closed][,shoulder][,lower][,continues OTHER]: a line of your own. A POINT is the "
+    "number of a control point, or its place like r2c-3: row 2 from below, column 3 on the subject's right "
+    "(c0 is the middle); r2c-3:r2c3 goes along a row or a column. control.csv lists them all. With "
+    "fractions, like r2.35c-3.2, the line is free: it runs between control points, straight over each "
+    "triangle. With shoulder it runs on over the shoulder to the under-bust band. With lower its rows, from "
+    "above, and columns are those of the lower trunk (c0 front, c11 back); one that continues a line of the "
+    "bust is one band with it. Set its length with --line NAME=LENGTH, else it is measured only"
 )
 """What a user has to know to write an own line."""
 
@@ -49,7 +49,7 @@ def template_of(region: str, template: str) -> AnyTemplate:
 
 
 def parse_line(text: str, template: Template) -> CustomLine:
-    """Read ``NAME=POINT,POINT,...`` and what follows on the ``template`` of the bust, or the lower one (ours).
+    """Read ``NAME=POINT,POINT,...`` and what follows on the ``template`` of the bust or the lower one (ours).
 
     Raises LineError, see ``HELP``.
     """

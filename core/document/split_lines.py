@@ -9,7 +9,7 @@ from core.control_mesh.embedding import embed
 from core.control_mesh.template import Template
 from core.document.design import Design
 from core.document.line_notation import DECIMALS
-from core.document.lines import CustomLine
+from core.document.lines import LOWER, CustomLine
 from core.errors import LineError
 from core.messages import LineName, Message
 
@@ -127,6 +127,11 @@ def split(design: Design, template: Template, name: str, *, linked: bool = False
 def _halves_of(design: Design, template: Template, name: str) -> tuple[CustomLine, CustomLine]:
     """Return both halves of a line of the design. Raises LineError if there are none, or nothing moves."""
     own = {line.name: line for line in design.own_lines}
+    if len(design.band_of(name)) > 1 or (name in own and own[name].region == LOWER):
+        raise LineError(
+            Message("The line {name} runs below the bust and cannot be split.", name=LineName(name)),
+            Message("Draw two lines instead."),
+        )
     if name in own and own[name].free:
         touched = embed(template.grid, own[name].grid_path).weights.nonzero()[1].tolist()
     elif name in own:

@@ -107,9 +107,51 @@ def cut_list_of(shown: ShownState) -> CutList:
     Raises LineError for control points that are not a valid shape.
     """
     lists = [cut_list(*each) for each in zip(shown.stages.regions, shown.region_points, strict=True)]
-    rows = tuple(row for each in lists for row in each.rows)
+    rows = _joined(shown.stages.design, [row for each in lists for row in each.rows])
     notes = tuple(dict.fromkeys(note for each in lists if each.rows for note in each.notes))
     return replace(lists[0], rows=rows, notes=notes or lists[0].notes)
+
+
+def _joined(design: Design, rows: list[CutRow]) -> tuple[CutRow, ...]:
+    """Return the rows with one for each band over both regions, if both parts are of one elastic."""
+    by_line = {row.line: row for row in rows}
+    bands = [[by_line[name] for name in design.band_of(row.line) if name in by_line] for row in rows]
+    whole = {
+        band[0].line: _band(*band) for band in bands if len(band) == 2 and band[0].elastic == band[1].elastic
+    }
+    parts = {name for upper in whole for name in design.band_of(upper)[1:]}
+    return tuple(whole.get(row.line, row) for row in rows if row.line not in parts)
+
+
+def _band(upper: CutRow, lower: CutRow) -> CutRow:
+    """Return the row of a band from those of its parts, between which nothing is sewn."""
+    reached = upper.reached_front_mm + lower.reached_front_mm
+    note = Message(
+        "One band: {upper} above and {lower} below the under-bust.",
+        upper=Length(upper.reached_front_mm),
+        lower=Length(lower.reached_front_mm),
+    )
+    band = replace(
+        upper,
+        reached_front_mm=reached,
+        reached_whole_mm=upper.reached_whole_mm + lower.reached_whole_mm,
+        notes=tuple(dict.fromkeys((note, *upper.notes, *lower.notes))),
+        front_only=upper.front_only or lower.front_only,
+        far=upper.far or lower.far,
+        slack=upper.slack or lower.slack,
+        push_n=max(upper.push_n, lower.push_n),
+        refused=upper.refused or lower.refused,
+        elongation=None,
+        cut_mm=None,
+    )
+    if upper.tension_n is not None and lower.tension_n is not None:
+        pulls = upper.tension_n * upper.reached_front_mm + lower.tension_n * lower.reached_front_mm
+        band = replace(band, tension_n=pulls / reached)
+    if upper.cut_mm is None or lower.cut_mm is None:
+        return band
+    allowance = upper.allowance_mm or 0.0
+    cut = upper.cut_mm + lower.cut_mm - allowance
+    return replace(band, cut_mm=cut, elongation=max(reached / (cut - allowance) - 1.0, 0.0))
 
 
 def cut_list(stages: RegionStages, control_points: Points) -> CutList:
@@ -188,7 +230,17 @@ def goes_on(stages: RegionStages, line: Line) -> bool:
     bands = [each.places(rest)[1:-1] for each in stages.model.lines if each.back_length > 0.0]
     ends = line.places(rest)[[0, -1]]
     sewn = [any(max_deviation(end[None], band) < SEWN_ON for band in bands) for end in ends]
+    if (joint := _joint(stages.design, line.name, ends)) is not None:
+        sewn[joint] = True
     return any(held and not sewed for held, sewed in zip(fixed[[0, -1]], sewn, strict=True))
+
+
+def _joint(design: Design, name: str, ends: Points) -> int | None:
+    """Return at which of its ``ends`` (2, 3) [mm] a line runs on in the other region, if it does."""
+    own = next((line for line in design.own_lines if line.name == name), None)
+    if own is not None and own.continues:
+        return int(ends[:, 2].argmax())
+    return int(ends[:, 2].argmin()) if len(design.band_of(name)) > 1 else None
 
 
 def is_strap(stages: RegionStages, line: Line) -> bool:

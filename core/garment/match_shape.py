@@ -120,7 +120,7 @@ def match_reached_lengths(
             ),
             Message("Make the lines longer, or choose stronger or wider elastics."),
         )
-    pairs = {name: _shared(found, design.linked_pair(name), moving) for name in moving}
+    pairs = {name: _shared(found, design.linked_lines(name), moving) for name in moving}
     missed = {name: float(each) for name, each, far in zip(moving, excess, short, strict=True) if far}
     return MatchedDesign(with_line_ratios(found, pairs), missed)
 

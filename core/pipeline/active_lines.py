@@ -18,7 +18,7 @@ def active_line_groups(stages: RegionStages) -> tuple[LineGroup, ...]:
     """
     model = stages.model
     pulling = [model.lines[at].name for at in model.acting_lines]
-    groups = (tuple(sorted(set(stages.design.linked_pair(name)).intersection(pulling))) for name in pulling)
+    groups = (tuple(sorted(set(stages.design.linked_lines(name)).intersection(pulling))) for name in pulling)
     return tuple(dict.fromkeys(groups))
 
 
@@ -31,5 +31,12 @@ def free_lines(stages: RegionStages, kept: Collection[str] = ()) -> tuple[LineGr
 
 
 def all_free_lines(stages: Stages, kept: Collection[str] = ()) -> tuple[LineGroup, ...]:
-    """Return the ``free_lines`` of all regions."""
-    return tuple(group for region in stages.regions for group in free_lines(region, kept))
+    """Return the ``free_lines`` of all regions; those of a band that runs over both are one group."""
+    design, found = stages.design, [group for region in stages.regions for group in free_lines(region, kept)]
+    stay = {other for name in kept for other in design.band_of(name)}
+    bands: dict[tuple[str, ...], LineGroup] = {}
+    for group in found:
+        band = design.linked_lines(group[0])
+        if not stay.intersection(band):
+            bands[band] = (*bands.get(band, ()), *group)
+    return tuple(bands.values())

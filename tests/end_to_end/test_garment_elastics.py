@@ -158,7 +158,7 @@ def test_an_elastic_beyond_its_table_is_told_in_a_drag_and_anew_at_the_next_edit
     run_bodiless([], script)
 
 
-def test_a_linked_pair_is_made_of_the_same_in_one_step() -> None:
+def test_a_linked_lines_is_made_of_the_same_in_one_step() -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
         window.add_lines_controller.add("straps")
@@ -172,7 +172,7 @@ def test_a_linked_pair_is_made_of_the_same_in_one_step() -> None:
         assert window.session.undo_stack.undoText() == "Straps: Strap 12 mm"
         design = window.session.design
         assert design is not None
-        assert design.linked_pair("strap left") == ("strap left", "strap right")
+        assert design.linked_lines("strap left") == ("strap left", "strap right")
         for name, row in cut_rows(window).items():
             assert row.reached_front_mm == pytest.approx(before[name].reached_front_mm, abs=0.2)
         assert window.garment.rows["strap left"].elastic.words == "Strap 12 mm"

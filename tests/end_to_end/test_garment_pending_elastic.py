@@ -34,7 +34,7 @@ def take(window: MainWindow, line: str) -> None:
     """Choose an elastic for a line before its effect is known."""
     design = window.session.design
     assert design is not None
-    window.elastic_assignment_controller.choose(design.linked_pair(line), find_elastic("strap 15"))
+    window.elastic_assignment_controller.choose(design.linked_lines(line), find_elastic("strap 15"))
 
 
 def test_an_elastic_goes_to_no_other_variant_and_to_no_other_document(gate: threading.Event) -> None:

@@ -72,11 +72,11 @@ def test_a_line_is_drawn_by_clicks_and_snaps_to_the_control_mesh_on_both_sides()
         assert np.abs(curve - skin.vertices.mean(axis=0)).max() < 400.0
         window.view.viewport.setFocus()
         press(window, Qt.Key.Key_Return)
-        assert isinstance(drawing._found, FreeCurve), "as it was drawn, unless that is chosen otherwise"
-        assert drawing._found.deviation < 1.0
+        assert isinstance(drawing._found["bust"], FreeCurve), "as it was drawn, unless chosen otherwise"
+        assert drawing._found["bust"].deviation < 1.0
         card.snap.click()
-        assert drawing._found.path == path
-        assert drawing._found.deviation < 15.0
+        assert drawing._found["bust"].path == path
+        assert drawing._found["bust"].deviation < 15.0
         card.both.setChecked(True)
         press(window, Qt.Key.Key_Return)
         assert not card.isVisible()
@@ -111,12 +111,12 @@ def test_a_line_on_the_rib_cage_is_said_to_measure_only_and_can_move_to_where_it
         click(window, row[2], row[4])
         window.view.viewport.setFocus()
         press(window, Qt.Key.Key_Return)
-        assert not drawing._found.is_movable
+        assert not drawing._found["bust"].is_movable
         assert "measured only" in card._what.text()
-        assert isinstance(drawing._found, FreeCurve)
+        assert isinstance(drawing._found["bust"], FreeCurve)
         card.move_.click()
         assert card.snap.isChecked()
-        assert drawing._found.is_movable
+        assert drawing._found["bust"].is_movable
         assert "measured only" not in card._what.text()
         assert card.move_.isHidden()
         press(window, Qt.Key.Key_Return)
@@ -133,7 +133,7 @@ def test_a_diagonal_stays_what_was_drawn_and_can_be_drawn_anew() -> None:
         click(window, at(2, 1), at(5, 4))
         window.view.viewport.setFocus()
         press(window, Qt.Key.Key_Return)
-        drawn, found = np.concatenate(drawing._curve), drawing._found
+        drawn, found = np.concatenate(drawing._curve), drawing._found["bust"]
         card.both.setChecked(True)
         press(window, Qt.Key.Key_Return)
         yield lambda: "line 1 left" in window.lines.rows and window.is_settled()
@@ -199,7 +199,7 @@ def let_go_of(window: MainWindow) -> Script:
     """What is drawn ends with its control mesh or its line, and never takes the place of another line."""
     session, drawing, routing = window.session, window.draw_tool, window.path_tool
     session.edit(lambda design: design.without_custom_line("line 1 left"), "one side away")
-    drawing._keep(Snapped((at(2, 2), at(3, 2)), closed=False, deviation=0.0, is_movable=True))
+    drawing._keep({"bust": Snapped((at(2, 2), at(3, 2)), closed=False, deviation=0.0, is_movable=True)})
     assert [line.name for line in session.design.own_lines] == ["line 1 right", "line 2 left", "line 2 right"]
     routing.begin("line 2 right")
     assert routing._sketching.at_work
@@ -239,13 +239,13 @@ def a_ring(window: MainWindow) -> Script:
     click(window, *ring)
     assert len(drawing._places) == len(ring)
     click(window, ring[0])
-    assert drawing._found.closed
+    assert drawing._found["bust"].closed
     card = drawing._sketching.card
-    assert isinstance(drawing._found, Snapped) == card.snap.isChecked()
+    assert isinstance(drawing._found["bust"], Snapped) == card.snap.isChecked()
     card.snap.setChecked(True)
-    assert set(ring) <= set(drawing._found.path)
+    assert set(ring) <= set(drawing._found["bust"].path)
     card.snap.setChecked(False)
-    assert drawing._found.deviation < 1.0
+    assert drawing._found["bust"].deviation < 1.0
     press(window, Qt.Key.Key_Escape)
     assert not drawing._sketching.at_work
     assert window.session.design.own_lines == ()

@@ -119,7 +119,7 @@ class LinesWalk(WindowWalk):
         elif what == "linked":
             self._link(name, row)
         else:
-            names, value = self.design.linked_pair(name), self._trait(what, row)
+            names, value = self.design.linked_lines(name), self._trait(what, row)
             if value is not _NOTHING:
                 self.decide(lambda design: reduce(lambda d, n: treated(d, n, what, value), names, design))
 
@@ -170,7 +170,7 @@ class LinesWalk(WindowWalk):
         chosen = self.row()
         if chosen is None or not chosen[1].view.own:
             return
-        names = self.design.linked_pair(chosen[0])
+        names = self.design.linked_lines(chosen[0])
         self.window.lines.do("remove")
         self.decide(lambda design: reduce(Design.without_custom_line, names, design))
 

@@ -65,7 +65,7 @@ def differences_seen(window: MainWindow, document: Document) -> list[str]:
 def _lines_seen(window: MainWindow, design: Design) -> list[str]:
     rows, found = window.lines.rows, []
     names = {"mid-bust", "full-bust", "under-bust", *(line.name for line in design.own_lines)}
-    led = {name: min(design.linked_pair(name)) for name in names}
+    led = {name: min(design.linked_lines(name)) for name in names}
     if set(rows) != set(led.values()):
         found.append(f"rows {sorted(rows)} for {sorted(set(led.values()))}")
     for name in set(rows) & set(led.values()):

@@ -96,7 +96,7 @@ def elastics_text(stages: Stages, name: str, *, keep_fit: bool = False) -> str:
             Message("There is no line '{line}'.", line=LineName(name)),
             Message("Available lines: {known}.", known=known),
         )
-    names, rigid = design.linked_pair(line), None
+    names, rigid = design.linked_lines(line), None
     rows = [["", "elong. %", "cut mm", "body mm", "lift mm", ""]]
     for elastic in (None, *library().values()):
         option = elastic_option(stages, names, elastic, mode)

@@ -114,7 +114,7 @@ def _widths(stages: Stages, findings: tuple[Finding, ...]) -> Iterator[Change]:
         for kpa in (limits.amber_kpa, limits.red_kpa):
             needed = math.ceil(_ROOMY * width * each.value / kpa / _WIDTH_STEP) * _WIDTH_STEP
             if width < needed <= WIDEST:
-                yield wider_bands(design, tuple(sorted(design.linked_pair(each.lines[0]))), needed)
+                yield wider_bands(design, tuple(sorted(design.linked_lines(each.lines[0]))), needed)
 
 
 def _is_longer(design: Design, change: Change) -> bool:

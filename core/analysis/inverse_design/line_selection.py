@@ -26,7 +26,7 @@ def optional_lines(stages: Stages) -> tuple[Chosen, ...]:
     design, active = stages.design, stages.design.all_active_lines()
     moving = [line.name for line in stages.lines if line.constrains]
     off = [name for name in moving if name not in active and not design.line_settings(name).locked]
-    groups = (tuple(sorted(set(design.linked_pair(name)).intersection(off))) for name in off)
+    groups = (tuple(sorted(set(design.linked_lines(name)).intersection(off))) for name in off)
     return tuple(dict.fromkeys(groups))
 
 

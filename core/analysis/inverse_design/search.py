@@ -333,7 +333,7 @@ def _asked(stages: Stages, groups: Sequence[LineGroup], read: ReadMany) -> tuple
     _, slopes = read(stages.rest_points)
     regions = zip(stages.regions, stages.region_rows, strict=True)
     asked = [region for region, rows in regions if slopes[:, rows].any()]
-    return tuple(group for group in groups if stages.region_of(group[0]) in asked)
+    return tuple(group for group in groups if any(stages.region_of(name) in asked for name in group))
 
 
 def _constraint(kind: str, figures: Callable[[Floats], Sequence[Floats]]) -> dict[str, Any]:

@@ -93,13 +93,16 @@ def limits_from(
 
 
 def limits_of(stages: Stages, name: str, progress: Progress = quiet, *, through: bool = True) -> Limits:
-    """Return the limits of a line, worn or not, the others being as they are set.
+    """Return the limits of a line in its region, worn or not, the others being as they are set.
 
     A linked partner goes with it. Lines made of elastics pull as these do at each length. ``through``: go on
     where it is red, to tell all of SIGNS, and look at the line as it is set too. Raises Cancelled.
     """
-    both, worn = stages.design.linked_pair(name), name in stages.region_of(name).design.active_lines()
-    tried = build(stages.design.wearing(both), stages).region_of(name)
+    design = stages.design
+    region, linked = design.region_of(name), design.linked_lines(name)
+    both = tuple(each for each in linked if design.region_of(each) is region)
+    worn = name in region.active_lines()
+    tried = build(design.wearing(both), stages).region_of(name)
     design, model = tried.design, tried.model
     lines = [line.name for line in model.lines]
     together = {lines.index(each) for each in both}

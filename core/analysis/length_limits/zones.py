@@ -99,10 +99,34 @@ def length_limits_of(
 ) -> LengthLimits | None:
     """Return the leeway of a line that moves anything, worn or not, the others being as they are set.
 
-    ``through``: look on where it is red, and tell what else is wrong there. None where the other lines leave
-    no balance at any length. Raises Cancelled.
+    Of a band over both regions it is what both allow. ``through``: look on where it is red, and tell what
+    else is wrong there. None where the other lines leave no balance at any length. Raises Cancelled.
     """
-    return to_length_limits(limits_of(stages, name, progress, through=through))
+    found = None
+    for each in stages.design.band_of(name):
+        limits = limits_of(stages, each, progress, through=through)
+        if not limits.line.constrains and each != name:
+            continue
+        zones = to_length_limits(limits)
+        if zones is None:
+            return None
+        found = zones if found is None else _both(name, found, zones)
+    return found
+
+
+def _both(name: str, one: LengthLimits, other: LengthLimits) -> LengthLimits:
+    """Return what two parts of a band allow: at each length the worse, with the reasons of both."""
+    ends = sorted(
+        {end for limits in (one, other) for zone in limits.zones for end in (zone.short, zone.long)}
+    )
+    pieces = []
+    for short, long in pairwise(ends):
+        zones = [limits.at(0.5 * (short + long)) for limits in (one, other)]
+        reasons = tuple(dict.fromkeys(reason for zone in zones for reason in zone.reasons))
+        tone = max((zone.tone for zone in zones), key=TONES.index)
+        pieces.append(Zone(tone, short, long, reasons))
+    zones_ = (_joined(list(alike)) for _, alike in groupby(pieces, lambda zone: zone.tone))
+    return LengthLimits(name, tuple(zones_), one.pressure_known and other.pressure_known)
 
 
 def to_length_limits(limits: Limits) -> LengthLimits | None:

@@ -32,7 +32,7 @@ def splittable_lines(design: Design, template: Template) -> tuple[str, ...]:
     """Return the worn lines that can be set apart or split so that left and right change each by itself."""
     free = [name for name in sorted(design.active_lines()) if not design.line_settings(name).locked]
     return tuple(
-        name for name in free if len(design.linked_pair(name)) > 1 or can_split(design, template, name)
+        name for name in free if len(design.linked_lines(name)) > 1 or can_split(design, template, name)
     )
 
 
@@ -44,6 +44,6 @@ def split_sides(design: Design, template: Template) -> Design:
 
 
 def _parted(design: Design, template: Template, name: str) -> Design:
-    if len(design.linked_pair(name)) > 1:
+    if len(design.linked_lines(name)) > 1:
         return design.with_line_settings(replace(design.line_settings(name), linked=False))
     return split(design, template, name) if can_split(design, template, name) else design

@@ -56,7 +56,7 @@ def test_lines_across_both_sides_and_pairs_move_no_side_alone(plain: Stages) -> 
         "under-bust",
     }
     assert moves_one_side(build(after, plain))
-    assert not any(len(after.linked_pair(name)) > 1 for name in after.active_lines())
+    assert not any(len(after.linked_lines(name)) > 1 for name in after.active_lines())
     apart = design.with_line("strap left", 0.9)
     assert moves_one_side(build(apart, plain))
     locked = design.with_line_settings(LineSettings("mid-bust", locked=True))

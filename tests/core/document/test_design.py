@@ -221,7 +221,7 @@ def test_a_linked_line_shares_its_length():
     alone = both.with_line_settings(LineSettings("strap right", linked=False))
     assert alone.with_linked("strap right", 0.9).active_lines() == {"strap right"}
     assert PLAIN.with_linked("mid-bust", 0.9).active_lines() == {"mid-bust"}
-    assert both.with_line("strap left", 0.9).linked_pair("strap left") == ("strap left",), (
+    assert both.with_line("strap left", 0.9).linked_lines("strap left") == ("strap left",), (
         "it is not shared yet"
     )
 
@@ -232,12 +232,12 @@ def test_a_pair_is_linked_from_both_sides_and_its_lock_is_for_both():
     )
     apart = both.with_line("strap left", 0.9).with_line("strap right", 0.9)
     apart = apart.with_line_settings(LineSettings("strap right", locked=True, linked=False))
-    assert apart.linked_pair("strap left") == ("strap left",), "as seen from the other side"
-    assert apart.with_line_settings(LineSettings("strap right", locked=True)).linked_pair("strap left") == (
+    assert apart.linked_lines("strap left") == ("strap left",), "as seen from the other side"
+    assert apart.with_line_settings(LineSettings("strap right", locked=True)).linked_lines("strap left") == (
         "strap left",
     )
     linked = apart.with_link("strap left")
-    assert linked.linked_pair("strap left") == ("strap left", "strap right")
+    assert linked.linked_lines("strap left") == ("strap left", "strap right")
     assert linked.line_settings("strap left").locked
     assert apart.with_line("strap left", 0.8).with_link("strap right").ratio("strap left") == 0.9
     with pytest.raises(LineError, match="strap right is locked"):

@@ -56,13 +56,13 @@ def test_halves_are_worn_and_treated_as_the_whole_was() -> None:
     for name in after.active_lines():
         assert after.ratio(name) == 0.93
         assert after.line_settings(name) == replace(traits, name=name, linked=False)
-        assert after.linked_pair(name) == (name,)
+        assert after.linked_lines(name) == (name,)
     assert is_split(after, "mid-bust")
     assert is_split(after.with_line("mid-bust left", None), "mid-bust"), "one half is worn"
     assert not is_split(after.with_line("mid-bust", 0.9), "mid-bust"), "it is worn besides"
     assert not is_split(PLAIN.with_line("mid-bust", None), "mid-bust"), "it is off, and nothing in its place"
     tied = split(PLAIN, TEMPLATE, "mid-bust", linked=True)
-    assert tied.linked_pair("mid-bust left") == ("mid-bust left", "mid-bust right")
+    assert tied.linked_lines("mid-bust left") == ("mid-bust left", "mid-bust right")
     elastic = find_elastic("picot 10")
     made = split(PLAIN.with_elastic("mid-bust", elastic), TEMPLATE, "mid-bust")
     assert made.active_elastics() == {"mid-bust left": elastic, "mid-bust right": elastic}

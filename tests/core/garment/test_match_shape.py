@@ -127,13 +127,13 @@ def test_a_line_of_elastic_becomes_one_of_the_model_again(built, contact):
         assert bare.ratio(name) == pytest.approx(ratio, abs=2e-4)
 
 
-def test_a_linked_pair_stays_one_though_its_sides_are_uneven(built):
+def test_a_linked_lines_stays_one_though_its_sides_are_uneven(built):
     stages = built("person")
     design = replace(stages.design, own_lines=ready_made_lines(read_template("168"))["straps"], lines=())
     design = design.with_line("strap left", 0.99).with_line("strap right", 0.99)
     made = exactly_as_worn(build(design, stages), {"strap left": STRAP, "strap right": STRAP})
     assert made.ratio("strap left") == made.ratio("strap right") < 0.85
-    assert made.linked_pair("strap left") == ("strap left", "strap right")
+    assert made.linked_lines("strap left") == ("strap left", "strap right")
     alone = exactly_as_worn(build(design, stages), {"strap left": STRAP})
     assert alone.ratio("strap right") == 0.99
     assert alone.ratio("strap left") < 0.85

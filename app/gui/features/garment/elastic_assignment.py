@@ -50,7 +50,7 @@ class ElasticAssignmentController(QObject):
         """Show elastics for a line and its linked partner."""
         design = self._session.design
         if design is not None:
-            self._open(design.linked_pair(name), design.line_settings(name).elastic)
+            self._open(design.linked_lines(name), design.line_settings(name).elastic)
 
     def show_all(self) -> None:
         """Show elastics for all lines of the cut list: active ones, and bands on fixed points."""

@@ -82,7 +82,7 @@ class ElasticRequest:
 
     def is_one(self) -> bool:
         """Return whether it is one line, or a linked pair."""
-        return set(self.names) <= set(self.design.linked_pair(self.names[0]))
+        return set(self.names) <= set(self.design.linked_lines(self.names[0]))
 
     def title(self) -> str:
         """Return the name of the line, or that all lines have together."""

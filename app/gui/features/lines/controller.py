@@ -120,7 +120,7 @@ class LinesController(QObject):
             names: tuple[str, ...] = (name, partner_of(name))
             text = self._linked_text(design, name, bool(value))
         else:
-            names, text = design.linked_pair(name), _text(row_title(name, design), trait, value)
+            names, text = design.linked_lines(name), _text(row_title(name, design), trait, value)
 
         def decided(before: Design) -> Design:
             if trait == "linked" and value:
@@ -137,7 +137,7 @@ class LinesController(QObject):
     def set_visible(self, name: str, visible: bool) -> None:
         """Show or hide the bands of a line and its linked partner."""
         if self._session.design is not None:
-            for each in self._session.design.linked_pair(name):
+            for each in self._session.design.linked_lines(name):
                 self._context.view.set_line_visible(each, visible)
             self.show_rows()
 
@@ -147,7 +147,7 @@ class LinesController(QObject):
         if design is None:
             return
         text = tr("{line} removed").format(line=row_title(name, design))
-        names = design.linked_pair(name)
+        names = design.linked_lines(name)
         self._session.edit(lambda before: reduce(Design.without_custom_line, names, before), text)
         left = self._session.design
         if left is not None and left is not design:
@@ -157,7 +157,7 @@ class LinesController(QObject):
         """Let a line and its linked partner run on over the shoulder, or end on the upper chest."""
         text = tr("{line}: extended over shoulder") if over else tr("{line}: ends at upper chest")
         text = text.format(line=row_title(name, design))
-        names = design.linked_pair(name)
+        names = design.linked_lines(name)
 
         def led(before: Design) -> Design:
             lines = (line for line in before.own_lines if line.name in names)

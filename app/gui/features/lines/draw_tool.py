@@ -9,22 +9,22 @@ import numpy as np
 from PySide6.QtCore import QObject, QPointF, QSignalBlocker
 
 from app.gui.features.lines.add_lines import AddLinesController
-from app.gui.features.lines.drawing_base import DrawingBase
+from app.gui.features.lines.drawing_base import DrawingBase, meshes_of
 from app.gui.features.lines.panel import LinesPanel
-from app.gui.features.lines.path_tool import with_new_path
 from app.gui.session.jobs import Job
 from app.i18n.catalog import tr
 from app.i18n.lengths import length
 from app.presenters.lines import LINE_COLOURS, line_colours, row_title
 from app.presenters.messages import kind_of
-from core.control_mesh.path_snapping import Snapped, snap
-from core.control_mesh.template import read_template
-from core.document.free_lines import FreeCurve, free_curve
-from core.document.line_notation import mirror_image, path_cells
+from core.control_mesh.path_snapping import Snapped
+from core.document.design import Design
+from core.document.drawn_lines import Laid, both_sides, lay_curve, lines_of, with_new_path
+from core.document.free_lines import FreeCurve
 from core.document.lines import CustomLine
 from core.errors import UserError
 from core.geometry.geodesic import SurfacePaths
 from core.geometry.mesh import Points
+from core.pipeline.live_solver import Frame
 from core.scan.body import Body
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ class LineDrawTool(QObject):
         self._job_body: Body | None = None
         self._places: list[Points] = []
         self._curve: list[Points] = []
-        self._found: Snapped | FreeCurve | None = None
+        self._found: Laid | None = None
         self._wanted: tuple[list[Points], bool] = ([], False)
         self._again: CustomLine | None = None
         hand, card = self._sketching.hand, self._sketching.card
@@ -187,13 +187,10 @@ class LineDrawTool(QObject):
         frame = self._context.session.frame
         if frame is None:
             return False
-        control, (pieces, closed) = frame.stages.fitted, self._wanted
+        (pieces, closed), snapped = self._wanted, self._sketching.card.snap.isChecked()
+        skin, meshes = frame.stages.body.mesh, meshes_of(frame)
         try:
-            if self._sketching.card.snap.isChecked():
-                curve = np.concatenate(pieces)
-                self._found = snap(control, curve[:-1] if closed else curve, closed, pulling=pulling)
-            else:
-                self._found = free_curve(frame.stages.body.mesh, control, pieces, closed)
+            self._found = lay_curve(skin, meshes, pieces, closed, snapped=snapped, pulling=pulling)
         except UserError as problem:
             self._context.session.failed.emit(problem)
             return False
@@ -213,30 +210,20 @@ class LineDrawTool(QObject):
             self._fit()
         self._show()
 
-    def _keep(self, found: Snapped | FreeCurve) -> None:
+    def _keep(self, found: Laid) -> None:
         """Add the line, and its mirror image if that is wished and another line; or give one its course."""
         session, card, again = self._context.session, self._sketching.card, self._again
         design = session.design
         if design is None:
             return
-        points, places = (found.path, ()) if isinstance(found, Snapped) else ((), found.places)
         if again is not None:
-            over = again.over_shoulder and not found.closed
-            after = CustomLine(again.name, points, found.closed, places, over)
             self.leave()
             text = tr("{line}: path changed").format(line=row_title(again.name, design))
-            session.edit(lambda before: with_new_path(before, again, after), text)
+            session.edit(lambda before: _led_along(before, again.name, found), text)
             return
-        template = read_template(design.template)
         taken = {*LINE_COLOURS, *(kind_of(line.name) for line in design.own_lines)}
         name = next(f"line {count}" for count in range(1, 1000) if f"line {count}" not in taken)
-        lines: tuple[CustomLine, ...] = (CustomLine(name, points, found.closed, places),)
-        other = mirror_image(lines[0], template, name)
-        if card.both.isChecked() and set(other.points + other.places) != set(points + places):
-            left = sum(column for _, column in path_cells(lines[0], template)) > 0.0
-            pair = (lines[0], other) if left else (other, lines[0])
-            sides = zip(("left", "right"), pair, strict=True)
-            lines = tuple(replace(line, name=f"{name} {side}") for side, line in sides)
+        lines = both_sides(name, found, design.template) if card.both.isChecked() else lines_of(name, found)
         self.leave()
         self._add.take(lines)
 
@@ -248,14 +235,14 @@ class LineDrawTool(QObject):
         card.keep.setText(tr("Keep line") if found else tr("Done"))
         card.keep.setEnabled(found is not None or len(self._places) > 1)
         card.undo.setEnabled(bool(self._places))
-        card.move_.setVisible(found is not None and not found.is_movable)
+        card.move_.setVisible(found is not None and not any(part.is_movable for part in found.values()))
         if found is not None:
             keys = tr("Enter: keep · Backspace: continue drawing · Esc: cancel")
             card.say(tr("Keep this line?"), "\n".join(_fit_words(found)), keys)
         else:
             what = tr(
                 "Click points on the body: the line follows the skin from point to point. Drag "
-                "to rotate the body. Outside the breasts a line is only measured."
+                "to rotate the body. Outside the reshaped regions a line is only measured."
             )
             keys = tr(
                 "Enter or double-click: finish · first point: close · Backspace: undo step · Esc: cancel"
@@ -265,6 +252,13 @@ class LineDrawTool(QObject):
                 title = tr("Path of {line}").format(line=row_title(self._again.name, design))
             card.say(title, what, keys)
         self._draw(self._curve)
+
+    def _laid(self, part: Snapped | FreeCurve, region: str, frame: Frame) -> Points:
+        """Return where a part of the proposed line is on the skin, (k, 3) [mm]."""
+        if isinstance(part, FreeCurve):
+            return part.shown
+        corners = [*part.path, *part.path[:1] * part.closed]
+        return self._sketching.laid(meshes_of(frame)[region].mesh.vertices[corners])
 
     def _colour(self) -> str:
         """Return the colour that the line has or will have."""
@@ -277,27 +271,36 @@ class LineDrawTool(QObject):
     def _draw(self, curve: list[Points]) -> None:
         frame, found = self._context.session.frame, self._found
         path = np.empty((0, 3))
-        if isinstance(found, FreeCurve):
-            path = found.shown
-        elif found is not None and frame is not None:
-            corners = [*found.path, *found.path[:1] * found.closed]
-            path = self._sketching.laid(frame.stages.fitted.mesh.vertices[corners])
+        if found is not None and frame is not None:
+            path = np.concatenate([self._laid(part, region, frame) for region, part in found.items()])
         drawn = np.concatenate(curve) if curve else np.empty((0, 3))
         points = np.array(self._places).reshape(-1, 3) if found is None else np.empty((0, 3))
         self._sketching.draw(drawn, path, points, self._colour())
 
 
-def _fit_words(found: Snapped | FreeCurve) -> list[str]:
+def _led_along(design: Design, name: str, found: Laid) -> Design:
+    """Return the design with the band of a line along another curve; it keeps all else."""
+    shoulder = {line.name for line in design.own_lines if line.over_shoulder}
+    lines = lines_of(design.band_of(name)[0], found)
+    over = (replace(line, over_shoulder=line.name in shoulder and not line.closed) for line in lines)
+    return with_new_path(design, list(over))
+
+
+def _fit_words(found: Laid) -> list[str]:
     """Return how a line lies to what was drawn, and what it does not do."""
-    if isinstance(found, FreeCurve):
-        texts = [tr("Deviation from the drawn curve: up to {length}.").format(length=length(found.deviation))]
-        if found.cut:
+    parts = found.values()
+    off = max(part.deviation for part in parts)
+    if any(isinstance(part, FreeCurve) for part in parts):
+        texts = [tr("Deviation from the drawn curve: up to {length}.").format(length=length(off))]
+        if any(isinstance(part, FreeCurve) and part.cut for part in parts):
             texts.append(tr("The part outside the control mesh was removed: the body is fixed there."))
     else:
         what = tr("Snapped to the control mesh; maximum deviation {length}.")
-        if found.deviation > _WIDE:
+        if off > _WIDE:
             what = tr("Lines run only on the control mesh; maximum deviation {length}.")
-        texts = [what.format(length=length(found.deviation, 0))]
-    if not found.is_movable:
+        texts = [what.format(length=length(off, 0))]
+    if len(found) > 1:
+        texts.append(tr("One band over bust and waist: both parts share one length."))
+    if not any(part.is_movable for part in parts):
         texts.append(tr("All points are fixed: the line is measured only and does not reshape the body."))
     return texts

@@ -20,7 +20,13 @@ if TYPE_CHECKING:
     from app.gui.context import AppContext
     from app.rendering.sketch_actor import SketchActor
 
+
 _PIECES = 8  # pieces that the path from one control point to the next is laid on the skin with
+
+
+def meshes_of(frame: Frame) -> dict[str, ControlMesh]:
+    """Return the control meshes that lines are drawn on, by region."""
+    return {region.fitted.region: region.fitted for region in frame.stages.regions}
 
 
 class DrawingBase(QObject):
@@ -44,7 +50,7 @@ class DrawingBase(QObject):
         self._sketch: SketchActor | None = None
         self._surface: tuple[Body, RibbonSurface] | None = None
         self._drawn: tuple[Points, Points, Points, str] | None = None
-        self._control: ControlMesh | None = None
+        self._meshes: tuple[ControlMesh, ...] = ()
         context.session.frame_ready.connect(self._follow)
         viewport.view_changed.connect(self._look)
         context.session.design_changed.connect(self._check)
@@ -63,7 +69,7 @@ class DrawingBase(QObject):
 
     def begin(self, frame: Frame) -> None:
         """Take the pointer, and show the card."""
-        self._control = frame.stages.fitted
+        self._meshes = tuple(meshes_of(frame).values())
         self.hand.begin()
         self.card.show()
 
@@ -72,7 +78,7 @@ class DrawingBase(QObject):
         if self.at_work:
             self.hand.end()
             self.card.hide()
-            self._drawn = self._control = None
+            self._drawn, self._meshes = None, ()
             if self._sketch is not None:
                 self._sketch.clear()
             self._viewport.request_draw()
@@ -123,8 +129,11 @@ class DrawingBase(QObject):
             self._sketch.look_from(self._viewport.view)
 
     def _check(self, _: object) -> None:
-        """Let go once the control mesh is another: there its points have other numbers and places."""
-        if self.at_work and (self.frame is None or self.frame.stages.fitted is not self._control):
+        """Let go once a control mesh is another: there its points have other numbers and places."""
+        if not self.at_work:
+            return
+        meshes = () if self.frame is None else tuple(meshes_of(self.frame).values())
+        if [id(each) for each in meshes] != [id(each) for each in self._meshes]:
             self.lost.emit()
 
     def _follow(self, _: object) -> None:

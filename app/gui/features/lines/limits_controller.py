@@ -104,7 +104,7 @@ class LimitsController(QObject):
         stages = frame.stages
         design = stages.design
         rows = [
-            line.name for line in self._in_order(stages) if line.name == min(design.linked_pair(line.name))
+            line.name for line in self._in_order(stages) if line.name == design.linked_lines(line.name)[0]
         ]
         keys = [key for key in (_key(design, name) for name in rows) if key not in self._known]
         if keys:
@@ -164,7 +164,11 @@ def _key(design: Design, name: str) -> Key:
 
     Of that only whether it is so short that its slider reaches far into what may be red.
     """
-    both = design.linked_pair(name)
-    region = design.region_of(name)
-    others = tuple(line for line in region.lines if line.name not in both)
-    return replace(region, lines=others, lower=None, volume="exact"), name, design.ratio(name) < SHORTEST
+    both, ratio = design.linked_lines(name), design.ratio(name)
+    if len(design.band_of(name)) == 1:
+        design = replace(design.region_of(name), lower=None)
+    others = tuple(line for line in design.lines if line.name not in both)
+    lower = design.lower
+    if lower is not None:
+        lower = replace(lower, lines=tuple(line for line in lower.lines if line.name not in both))
+    return replace(design, lines=others, lower=lower, volume="exact"), name, ratio < SHORTEST

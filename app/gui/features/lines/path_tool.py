@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PySide6.QtCore import QObject, QPointF
 
-from app.gui.features.lines.drawing_base import DrawingBase
+from app.gui.features.lines.drawing_base import DrawingBase, meshes_of
 from app.gui.features.lines.panel import LinesPanel
 from app.i18n.catalog import tr
 from app.presenters.lines import line_colours, row_title
-from core.control_mesh.template import read_template
 from core.document.design import Design
-from core.document.line_notation import mirror_image
-from core.document.lines import CustomLine, partner_of
+from core.document.drawn_lines import with_new_path
+from core.document.lines import CustomLine
 from core.errors import UserError
 from core.geometry.mesh import Points
 
@@ -24,16 +23,6 @@ if TYPE_CHECKING:
     from app.gui.context import AppContext
 
 _REACH = 16.0  # how near to a control point a click means it [px]
-
-
-def with_new_path(design: Design, line: CustomLine, after: CustomLine) -> Design:
-    """Return the design with an own line led elsewhere, and a linked partner that mirrors it likewise."""
-    template, partner = read_template(design.template), partner_of(line.name)
-    changed = design.with_custom_line(after)
-    mirrors = mirror_image(line, template, partner) in design.own_lines if partner else False
-    if mirrors and len(design.linked_pair(line.name)) > 1:
-        changed = changed.with_custom_line(mirror_image(after, template, partner))
-    return changed
 
 
 class LinePathTool(QObject):
@@ -75,10 +64,13 @@ class LinePathTool(QObject):
     def begin(self, name: str) -> None:
         """Let the path of an own line be edited."""
         design, frame = self._context.session.design, self._sketching.frame
-        own = {line.name: line for line in design.own_lines} if design is not None else {}
-        if name not in own or frame is None:
+        if design is None or frame is None:
             return
-        if own[name].free:  # it has no control points to be led through
+        own = {line.name: line for line in design.own_lines}
+        if name not in own or own[name].region not in meshes_of(frame):
+            return
+        # A free line has no control points to be led through, a band over both regions has two paths.
+        if own[name].free or len(design.band_of(name)) > 1:
             self._draw_again(own[name])
             return
         self._line, self._steps = own[name], [own[name].points]
@@ -111,7 +103,7 @@ class LinePathTool(QObject):
         self.leave()
         if path != line.points:
             text = tr("{line}: path changed").format(line=row_title(line.name, design))
-            session.edit(lambda before: with_new_path(before, line, replace(line, points=path)), text)
+            session.edit(lambda before: with_new_path(before, [replace(line, points=path)]), text)
 
     def _check(self, design: Design) -> None:
         """Leave the line once it is no longer the one that was begun with: it was undone, or removed."""
@@ -121,8 +113,10 @@ class LinePathTool(QObject):
     # -- the hand
 
     def _points(self) -> Points:
-        frame = self._context.session.frame
-        return np.empty((0, 3)) if frame is None else frame.stages.fitted.mesh.vertices
+        frame, line = self._context.session.frame, self._line
+        if frame is None or line is None or line.region not in meshes_of(frame):
+            return np.empty((0, 3))
+        return meshes_of(frame)[line.region].mesh.vertices
 
     def _grab(self, at: QPointF) -> bool:
         path = self._steps[-1]
@@ -157,7 +151,7 @@ class LinePathTool(QObject):
         """Show a path, and go on with it, if a line can take it."""
         assert self._line is not None
         try:
-            CustomLine(self._line.name, path, self._line.closed)
+            replace(self._line, points=path)
         except UserError:
             self._show()
             return

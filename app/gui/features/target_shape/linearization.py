@@ -7,7 +7,6 @@ from collections.abc import Callable
 from app.gui.session.session import Session
 from app.presenters.target_shape import missing_input_text
 from core.document.design import Design
-from core.document.lower_trunk import line_group
 
 
 class TargetDesign:
@@ -52,9 +51,8 @@ class TargetDesign:
         design = self.design
         if design is None:
             return ()
-        off = (
-            name for name in self.moving if line_group(name) == "bust" and name not in design.active_lines()
-        )
+        active = design.all_active_lines()
+        off = (name for name in self.moving if design.line_group(name) == "bust" and name not in active)
         return tuple(name for name in off if not design.line_settings(name).locked)
 
     @property
