@@ -56,7 +56,7 @@ def pair_title(name: str, design: Design) -> str:
     }
     if kind == "strap" and not all(each.over_shoulder for each in design.own_lines if each.name == name):
         titles[kind] = tr("Upper-chest straps")
-    return design.line_settings(name).title or titles.get(kind, kind[:1].upper() + kind[1:])
+    return design.line_settings(name).title or titles.get(kind) or line_title(kind)
 
 
 def row_title(name: str, design: Design) -> str:
@@ -84,15 +84,20 @@ def line_colours(names: Iterable[str], design: Design | None = None) -> dict[str
     halves = {name: LINE_COLOURS[kind_of(name)] for name in given if kind_of(name) in LINE_COLOURS}
     lower = sorted((name for name in given if line_group(name) != "bust"), key=_by_group)
     below = {name: LOWER_COLOURS.get(kind_of(name), SEAMS) for name in lower}
-    own = [name for name in given if name not in halves and name not in below]
-    kinds = list(dict.fromkeys(kind_of(name) for name in own))
+    own = {name: _own_kind(name, design) for name in given if name not in halves and name not in below}
+    kinds = list(dict.fromkeys(own.values()))
     order = list(LINE_COLOURS)
     colours = {name: halves[name] for name in sorted(halves, key=lambda each: order.index(kind_of(each)))}
-    colours |= {name: OWN_COLOURS[kinds.index(kind_of(name)) % len(OWN_COLOURS)] for name in own}
+    colours |= {name: OWN_COLOURS[kinds.index(kind) % len(OWN_COLOURS)] for name, kind in own.items()}
     colours |= below
     if design is None:
         return colours
     return {name: design.line_settings(name).colour or colour for name, colour in colours.items()}
+
+
+def _own_kind(name: str, design: Design | None) -> str:
+    """Return what is common to the lines of one colour: the parts of a band, on both sides."""
+    return kind_of(name if design is None else design.band_of(name)[0])
 
 
 def _by_group(name: str) -> int:
@@ -342,5 +347,6 @@ def band_label(design: Design, frame: Frame, name: str) -> tuple[str, str]:
         stretch = frame.line_lengths[name] / (ratio * line.rest_length) - 1.0
         text = tr("elongation {value}").format(value=f"{number(100.0 * stretch)} %")
         return f"{title} {length(frame.line_lengths[name])}", text
-    change = (ratio - 1.0) * line.rest_length
+    parts = (each for each in frame.stages.lines if each.name in design.band_of(name))
+    change = (ratio - 1.0) * sum(part.rest_length for part in parts)
     return f"{title} {number(100.0 * ratio)} %", length(change, signed=True)

@@ -8,7 +8,7 @@ band can: it is slack there.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import groupby, pairwise
 
@@ -115,18 +115,30 @@ def length_limits_of(
 
 
 def _both(name: str, one: LengthLimits, other: LengthLimits) -> LengthLimits:
-    """Return what two parts of a band allow: at each length the worse, with the reasons of both."""
-    ends = sorted(
-        {end for limits in (one, other) for zone in limits.zones for end in (zone.short, zone.long)}
-    )
-    pieces = []
-    for short, long in pairwise(ends):
-        zones = [limits.at(0.5 * (short + long)) for limits in (one, other)]
-        reasons = tuple(dict.fromkeys(reason for zone in zones for reason in zone.reasons))
-        tone = max((zone.tone for zone in zones), key=TONES.index)
-        pieces.append(Zone(tone, short, long, reasons))
-    zones_ = (_joined(list(alike)) for _, alike in groupby(pieces, lambda zone: zone.tone))
-    return LengthLimits(name, tuple(zones_), one.pressure_known and other.pressure_known)
+    """Return what two parts of a band allow: at each length the worse, with the reasons of both.
+
+    Of one reason that both give, the part is told where it holds for more lengths.
+    """
+    zones = [zone for limits in (one, other) for zone in limits.zones]
+    widest: dict[tuple[str, bool], Reason] = {}
+    for reason in (reason for zone in zones for reason in zone.reasons):
+        key = reason.why, reason.short <= RATIO_LIMITS[0]
+        known = widest.setdefault(key, reason)
+        if reason.long - reason.short > known.long - known.short:
+            widest[key] = reason
+    ends = sorted({end for zone in zones for end in (zone.short, zone.long)})
+    pieces = [_worse(one, other, widest.values(), short, long) for short, long in pairwise(ends)]
+    joined = (_joined(list(alike)) for _, alike in groupby(pieces, lambda zone: zone.tone))
+    return LengthLimits(name, tuple(joined), one.pressure_known and other.pressure_known)
+
+
+def _worse(
+    one: LengthLimits, other: LengthLimits, reasons: Iterable[Reason], short: float, long: float
+) -> Zone:
+    """Return the zone of lengths that both parts of a band have alike."""
+    middle = 0.5 * (short + long)
+    tone = max(one.at(middle).tone, other.at(middle).tone, key=TONES.index)
+    return Zone(tone, short, long, tuple(each for each in reasons if each.contains(middle)))
 
 
 def to_length_limits(limits: Limits) -> LengthLimits | None:
