@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from app.i18n.catalog import joined, number, tr
@@ -50,10 +50,16 @@ def as_table(
     rows = sorted(cuts.rows, key=lambda row: order.index(row.line))
     most = {row.line: row.max_kpa for row in pressed.rows} if pressed is not None else {}
     with using_unit("mm"):
-        cells = [_columns(row, most.get(row.line), design) for row in rows]
+        cells = [_columns(row, _most(row, most), design) for row in rows]
     titles = _titles()
     shown = list(titles if keys is None else keys)
     return [[titles[key] for key in shown], *([each[key] for key in shown] for each in cells)]
+
+
+def _most(row: CutRow, most: Mapping[str, float | None]) -> float | None:
+    """Return the largest pressure of a piece [kPa], None where it is not known."""
+    known = [kpa for name in (row.line, *row.parts) if (kpa := most.get(name)) is not None]
+    return max(known, default=None)
 
 
 def _titles() -> dict[str, str]:

@@ -61,13 +61,18 @@ def pair_title(name: str, design: Design) -> str:
 
 def row_title(name: str, design: Design) -> str:
     """Return what the row of a line is called: that of its pair if it is linked."""
-    return pair_title(name, design) if len(design.linked_lines(name)) > 1 else line_title(name, design)
+    upper = design.band_of(name)[0]
+    return pair_title(upper, design) if _is_linked(upper, design) else line_title(upper, design)
+
+
+def _is_linked(name: str, design: Design) -> bool:
+    return partner_of(name) in design.linked_lines(name)
 
 
 def told_title(name: str, design: Design) -> str:
     """Return what the row of a line is called where others follow: "Mid-bust (left)", "Straps"."""
-    side = side_of(name)
-    if not side or len(design.linked_lines(name)) > 1:
+    side, name = side_of(name), design.band_of(name)[0]
+    if not side or _is_linked(name, design):
         return row_title(name, design)
     kind = kind_of(name)
     titles = {"strap": tr("Strap"), "sling": tr("Sling"), "oblique": tr("Oblique"), "ring": tr("Ring")}

@@ -144,7 +144,7 @@ def _pieces(variants: Variants, pressed: Pressed) -> list[VariantRow]:
             ),
         )
         for name, design in _named(variants).items()
-        if name in made
+        if name in made and name == design.band_of(name)[0]
     ]
 
 
@@ -168,8 +168,13 @@ def _rests(frame: Frame | None) -> dict[str, float]:
     """Return the lines whose length can be set with their length at rest [mm], in the order of the list."""
     if frame is None:
         return {}
-    lines = {line.name: line for line in frame.stages.drawn_lines}
-    return {name: lines[name].rest_length for name in line_colours(lines) if lines[name].constrains}
+    lines, design = {line.name: line for line in frame.stages.drawn_lines}, frame.stages.design
+    bands = {name: design.band_of(name) for name in line_colours(lines)}
+    return {
+        name: sum(lines[part].rest_length for part in band if part in lines)
+        for name, band in bands.items()
+        if name == band[0] and any(lines[part].constrains for part in band if part in lines)
+    }
 
 
 def _ratio(design: Design, name: str, rest: dict[str, float]) -> float | None:

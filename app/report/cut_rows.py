@@ -76,8 +76,15 @@ def force_range_warning(sheet: Report) -> str:
 
 def _rows(sheet: Report, order: Sequence[str]) -> list[tuple[CutRow, PressureRow]]:
     """Return the rows of cut list and pressures, in the ``order`` of the lines."""
-    rows = zip(sheet.cuts.rows, sheet.pressures, strict=True)
-    return sorted(rows, key=lambda row: _place(row[0].line, order))
+    return sorted(_with_pressures(sheet), key=lambda row: _place(row[0].line, order))
+
+
+def _with_pressures(sheet: Report) -> list[tuple[CutRow, PressureRow]]:
+    """Return the rows of the cut list, each with the pressure of its line, or the largest of its band."""
+    pressed = {press.line: press for press in sheet.pressures}
+    bands = ([pressed[name] for name in (cut.line, *cut.parts)] for cut in sheet.cuts.rows)
+    most = (max(band, key=lambda press: press.max_kpa or 0.0) for band in bands)
+    return list(zip(sheet.cuts.rows, most, strict=True))
 
 
 def _notes(cut: CutRow, press: PressureRow, sheet: Report) -> list[str]:
@@ -88,7 +95,9 @@ def _notes(cut: CutRow, press: PressureRow, sheet: Report) -> list[str]:
 
 def _within_words(cut: CutRow, press: PressureRow, sheet: Report) -> Iterator[str]:
     """Yield where the figures of a piece lie in 95 % of cases, if somebody can work by that."""
-    parts, off = [], sheet.off.get(f"{CUT}:{cut.line}")
+    parts = []
+    # That of a band over both regions is known for its upper part alone.
+    off = None if cut.parts else sheet.off.get(f"{CUT}:{cut.line}")
     if off is not None and cut.cut_mm is not None:
         parts.append(tr("cut {off} {unit}").format(off=length_uncertainty(off), unit=length_unit()))
     words = tr("tension {low} to {high} N"), tr("maximum contact pressure {low} to {high} kPa")
@@ -102,7 +111,7 @@ def _within_words(cut: CutRow, press: PressureRow, sheet: Report) -> Iterator[st
 
 def _forces(sheet: Report) -> Iterator[tuple[float, float]]:
     """Yield the ranges of all tensions and pressures."""
-    for cut, press in zip(sheet.cuts.rows, sheet.pressures, strict=True):
+    for cut, press in _with_pressures(sheet):
         if not cut.slack:
             yield from filter(None, _force_ends(cut, press, sheet))
 

@@ -59,7 +59,7 @@ class CutRow:
     modelled, and no whole piece can be cut to them. ``far`` tells of an elastic that is stretched nearly to
     the end of its table, ``refused`` why none can be cut to this length. A ``slack`` line has no tension;
     ``push_n`` is what it would have to push with to hold the shape. ``height_mm`` is how high the middle of
-    its front part is over the bust points.
+    its front part is over the bust points. ``parts`` are the lines below the bust that are of the same band.
     """
 
     line: str
@@ -81,6 +81,7 @@ class CutRow:
     push_n: float = 0.0
     refused: Message = EMPTY
     height_mm: float | None = None
+    parts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -143,6 +144,7 @@ def _band(upper: CutRow, lower: CutRow) -> CutRow:
         refused=upper.refused or lower.refused,
         elongation=None,
         cut_mm=None,
+        parts=(lower.line,),
     )
     if upper.tension_n is not None and lower.tension_n is not None:
         pulls = upper.tension_n * upper.reached_front_mm + lower.tension_n * lower.reached_front_mm

@@ -105,14 +105,17 @@ class Diagnosis:
         return self.trial.region.gain
 
     def longer_mm(self, change: Change) -> float:
-        """Return by how much the first line of a change is set longer, negative if shorter [mm]."""
+        """Return how much longer the band of the first line of a change is set, negative if shorter [mm]."""
         name, before = change.lines[0], self.stages.design
-        return (change.design.ratio(name) - before.ratio(name)) * self.line(name).rest_length
+        return (change.design.ratio(name) - before.ratio(name)) * self._rest_length(name)
 
     def moves_mm(self, change: Change) -> float:
         """Return how far a change moves the length of any line at most [mm]."""
         before, after = self.stages.design, change.design
-        return max(abs(after.ratio(n) - before.ratio(n)) * self.line(n).rest_length for n in change.lines)
+        return max(abs(after.ratio(n) - before.ratio(n)) * self._rest_length(n) for n in change.lines)
+
+    def _rest_length(self, name: str) -> float:
+        return sum(self.line(part).rest_length for part in self.stages.design.band_of(name))
 
 
 def diagnose(stages: Stages, progress: Progress = quiet) -> Diagnosis:

@@ -241,7 +241,8 @@ def test_a_garment_of_six_lines_is_two_pages_too(sheet: Report, tmp_path: Path) 
     rows = tuple(replace(row, line=f"own {k}", title=f"Own line {k}") for k, row in enumerate(cuts))
     bridges = "Bridges hollows over {length}, up to {height} off the skin: no contact pressure there."
     notes = [(Message(bridges, length=Length(k), height=Length(k)),) for k in range(6)]
-    pressed = tuple(replace(row, notes=note) for row, note in zip(presses, notes, strict=True))
+    lines = zip(presses, rows, notes, strict=True)
+    pressed = tuple(replace(press, line=row.line, notes=note) for press, row, note in lines)
     six = replace(sheet, cuts=replace(sheet.cuts, rows=rows), pressures=pressed)
     for words in ("en", "ja"):
         assert len(written(handout(six), tmp_path / f"{words}.pdf", words).sizes) == 2
