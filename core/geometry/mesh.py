@@ -113,6 +113,13 @@ class Mesh:
         return float(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6.0
 
 
+def submesh(mesh: Mesh, kept: Flags) -> Mesh:
+    """Return the ``kept`` (m,) faces of a mesh with the vertices that they use."""
+    used = np.zeros(len(mesh.vertices), dtype=bool)
+    used[mesh.faces[kept]] = True
+    return Mesh(mesh.vertices[used], (np.cumsum(used) - 1)[mesh.faces[kept]])
+
+
 def quadric_terms(u: Floats, v: Floats) -> Floats:
     """Return what a quadric height over the plane at places ``u``, ``v`` is made of, shape (.., 6)."""
     return np.stack([np.ones_like(u), u, v, u * u, u * v, v * v], axis=-1)

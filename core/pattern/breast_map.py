@@ -1,0 +1,144 @@
+"""Polar map of a breast: clock position about the bust point and distance along the skin (ours).
+
+Clock positions are counted from above outward on both sides of the body: 0 up, 90 outward, 180 down, 270
+inward. Along the skin a place behind the breast, as the fold of an overhang,
+has one distance, which its height does not.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.errors import PatternError
+from core.geometry.closest_point import nearest_faces
+from core.geometry.mesh import Flags, Floats, Mesh, Points, submesh, unit
+from core.geometry.plane_sections import arc_length, cut, interpolate, join_segments
+from core.landmarks.types import Landmarks
+from core.messages import Message, SideName
+
+RAYS = 72
+"""Ways from the bust point whose places are known; between two of them is interpolated."""
+
+REACH = 240.0
+"""How far the ways go along the skin [mm]."""
+
+STEP = 2.0
+"""Distance between the places of a way [mm]."""
+
+ABOVE = 1.08
+"""The root above the bust point, where no landmark is, in parts of the mean of both sides."""
+
+
+@dataclass(frozen=True, eq=False)
+class BreastMap:
+    """The ``rays`` (RAYS, k, 3) [mm] of a breast, every ``STEP`` from its bust point, and its root.
+
+    ``root`` (RAYS,) [mm] is how far the root of the breast is on each. ``skin`` is the skin round it.
+    """
+
+    skin: Mesh
+    rays: Points
+    root: Floats
+
+    @property
+    def apex(self) -> Points:
+        """Return the bust point, (3,) [mm]."""
+        return np.asarray(self.rays[0, 0])
+
+    def root_distance(self, clock: Floats | float) -> Floats:
+        """Return how far the root is at clock positions [degrees], (n,) [mm]."""
+        every = np.arange(RAYS) * (360.0 / RAYS)
+        return np.asarray(np.interp(clock, every, self.root, period=360.0))
+
+    def places(self, clock: Floats, distance: Floats) -> Points:
+        """Return places of the skin at clock positions [degrees] and distances [mm], (n,), as (n, 3) [mm]."""
+        turn = np.atleast_1d(clock) % 360.0 * (RAYS / 360.0)
+        first = np.floor(turn).astype(np.int64) % RAYS
+        share = (turn - np.floor(turn))[:, None]
+        at = np.clip(np.atleast_1d(distance) / STEP, 0.0, self.rays.shape[1] - 1.001)
+        low = np.floor(at).astype(np.int64)
+        part = (at - low)[:, None]
+        one, other = (
+            (1.0 - part) * self.rays[ray, low] + part * self.rays[ray, low + 1]
+            for ray in (first, (first + 1) % RAYS)
+        )
+        return nearest_faces(self.skin, (1.0 - share) * one + share * other)[1]
+
+
+def breast_map(skin: Mesh, landmarks: Landmarks, side: str) -> BreastMap:
+    """Return the map of one breast of a body. Raises PatternError where the skin round it is incomplete."""
+    apex = landmarks.position(f"bust_point_{side}")
+    marks = {name: landmarks.position(f"root_{name}_{side}") for name in ("outer", "inner")}
+    outer, inner = marks["outer"], marks["inner"]
+    marks["fold"] = landmarks.position(f"fold_{side}")
+    near = submesh(skin, _round(skin, apex))
+    apex = nearest_faces(near, apex[None])[1][0]
+    axis = (apex - 0.5 * (outer + inner)) * [1.0, 1.0, 0.0]
+    up, axis = np.array([0.0, 0.0, 1.0]), unit(axis)
+    outward = np.cross(axis, up)
+    outward *= np.sign(outward @ (outer - inner))
+    rays = np.stack([np.zeros((int(REACH / STEP) + 1, 3))] * RAYS)
+    known = 0
+    for number in range(RAYS // 2):
+        turn = np.radians(number * 360.0 / RAYS)
+        way = np.cos(turn) * up + np.sin(turn) * outward
+        for ray, sign in ((number, 1.0), (number + RAYS // 2, -1.0)):
+            walked = _walk(near, apex, axis, sign * way)
+            known += len(walked) > 1
+            rays[ray] = _evenly(walked)
+    if known < RAYS:
+        raise PatternError(
+            Message("The skin around the {side} breast is incomplete.", side=SideName(side)),
+            Message("Fill the holes at the Scan step."),
+        )
+    root = _root(rays, apex, (up, outward), marks)
+    return BreastMap(near, rays, root)
+
+
+def _round(skin: Mesh, apex: Points) -> Flags:
+    """Return the faces round a bust point, (m,)."""
+    near = np.linalg.norm(skin.vertices - apex, axis=1) < REACH + 20.0
+    return np.asarray(near[skin.faces].any(axis=1))
+
+
+def _walk(skin: Mesh, apex: Points, axis: Points, way: Points) -> Points:
+    """Return the way along the skin from the bust point in a direction, in its plane with the ``axis``."""
+    curves = join_segments(cut(skin, apex, unit(np.cross(axis, way))))
+    if not curves:
+        return apex[None]
+    curve, closed = min(curves, key=lambda one: float(np.linalg.norm(one[0] - apex, axis=1).min()))
+    at = int(np.linalg.norm(curve - apex, axis=1).argmin())
+    if closed:
+        ways = [np.roll(curve[:-1], -at, axis=0), np.roll(curve[:-1][::-1], at + 1, axis=0)]
+    else:
+        ways = [curve[at:], curve[at::-1]]
+    ends = [way_[np.searchsorted(arc_length(way_), 15.0).clip(max=len(way_) - 1)] for way_ in ways]
+    chosen = ways[int(np.argmax([(end - apex) @ way for end in ends]))]
+    ahead = chosen[1:][(chosen[1:] - apex) @ way > 0.0] if len(chosen) < 4 else chosen[1:]
+    return np.concatenate([apex[None], ahead])
+
+
+def _evenly(walked: Points) -> Points:
+    """Return the places of a way every ``STEP``; beyond its end it stays there."""
+    at = np.arange(int(REACH / STEP) + 1, dtype=np.float64) * STEP
+    return interpolate(at, arc_length(walked), walked)
+
+
+def _root(rays: Points, apex: Points, plane: tuple[Points, Points], marks: dict[str, Points]) -> Floats:
+    """Return how far the root is on each ray, (RAYS,) [mm], a smooth curve through the landmarks."""
+    from scipy.interpolate import PchipInterpolator  # noqa: PLC0415 (a fifth of a second that no start needs)
+
+    up, outward = plane
+    clocks, far = [], {}
+    for name, mark in marks.items():
+        clock = float(np.degrees(np.arctan2((mark - apex) @ outward, (mark - apex) @ up)) % 360.0)
+        ray = rays[round(clock * RAYS / 360.0) % RAYS]
+        far[name] = STEP * float(np.linalg.norm(ray - mark, axis=1).argmin())
+        clocks.append((clock, far[name]))
+    clocks.append((0.0, ABOVE * 0.5 * (far["outer"] + far["inner"])))
+    known = np.array(sorted(clocks))
+    around = np.concatenate([known + np.array([turn, 0.0]) for turn in (-360.0, 0.0, 360.0)])
+    every = np.arange(RAYS) * (360.0 / RAYS)
+    return np.asarray(PchipInterpolator(around[:, 0], around[:, 1])(every))

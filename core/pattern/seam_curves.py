@@ -1,0 +1,111 @@
+"""Seams of a block as curves on the skin of a body."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from core.garment.curve_smoothing import smooth
+from core.geometry.closest_point import centroid_tree, nearest_faces
+from core.geometry.geodesic import SurfacePaths
+from core.geometry.mesh import Mesh, Points, submesh
+from core.geometry.plane_sections import arc_length, interpolate, resample
+from core.pattern.block import RING, ROOT, Block, Seam
+from core.pattern.places import BodyPlaces
+
+STEP = 3.0
+"""Distance between the places of a curve [mm]."""
+
+_ROUNDING = 6  # passes of smoothing that round a curve at the places that it goes through
+_MARGIN = 70.0  # skin above and below all that a block is drawn on [mm]
+
+
+@dataclass(frozen=True, eq=False)
+class SeamCurve:
+    """A ``seam`` of a block as it is drawn on one ``side`` of the body ("" over the middle), (k, 3) [mm]."""
+
+    seam: Seam
+    side: str
+    points: Points
+
+    @property
+    def name(self) -> str:
+        """Return the name of the curve: that of the seam, with its side."""
+        return f"{self.seam.name} {self.side}".rstrip()
+
+
+class SeamDrawing:
+    """Draws the seams of blocks on one body; the ways over its skin are prepared once."""
+
+    def __init__(self, places: BodyPlaces) -> None:
+        self.places = places
+        self._tree = centroid_tree(places.skin)
+        self._paths: tuple[tuple[float, float], SurfacePaths] | None = None
+
+    def levels(self, block: Block) -> Mapping[str, float]:
+        """Return the heights of the levels of a block [mm]. Raises PatternError."""
+        return {name: self.places.height(told) + off for name, (told, off) in block.levels.items()}
+
+    def curves(self, block: Block) -> tuple[SeamCurve, ...]:
+        """Return the curves of a block in its order. Raises PatternError, LineError."""
+        levels = self.levels(block)
+        drawn: dict[str, Points] = {}
+        found = []
+        for seam in block.seams:
+            for name, side in seam.named():
+                points = self._laid(self._drawn(seam, side, levels, drawn))
+                drawn[name] = points
+                found.append(SeamCurve(seam, side, points))
+        return tuple(found)
+
+    def _drawn(
+        self, seam: Seam, side: str, levels: Mapping[str, float], drawn: Mapping[str, Points]
+    ) -> Points:
+        first, last = seam.span
+        if seam.kind == ROOT:
+            return self._root(first, last, side, seam.below)
+        if seam.kind == RING:
+            ring = self.places.ring(levels[seam.level], side)
+            along = arc_length(ring)
+            ends = np.array([first, last]) * along[-1]
+            at = np.concatenate([ends[:1], along[(along > ends[0]) & (along < ends[1])], ends[1:]])
+            return interpolate(at, along, ring)
+        stops = [self.places.place(word, side, levels, drawn) for word in seam.places]
+        return self._way(stops)
+
+    def _root(self, first: float, last: float, side: str, below: bool) -> Points:
+        """Return the root of a breast from clock to clock, over 180 degrees if it is ``below``."""
+        end = last if below else last + 360.0 if last < first else last - 360.0
+        clocks = np.linspace(first, end, max(round(abs(end - first) / 2.0), 2))
+        breast = self.places.breasts[side]
+        return breast.places(clocks % 360.0, breast.root_distance(clocks % 360.0))
+
+    def _way(self, stops: list[Points]) -> Points:
+        """Return the shortest ways over the skin between places, rounded where they meet."""
+        paths = self._surface_paths(np.array(stops))
+        pieces = [paths.path(start, end) for start, end in pairwise(stops)]
+        whole = np.concatenate([pieces[0], *(piece[1:] for piece in pieces[1:])])
+        return smooth(resample(whole, STEP), _ROUNDING, closed=False)
+
+    def _surface_paths(self, stops: Points) -> SurfacePaths:
+        """Return the ways over the skin around places; what was prepared serves if it reaches as far."""
+        low, high = float(stops[:, 2].min()) - _MARGIN, float(stops[:, 2].max()) + _MARGIN
+        if self._paths is None or low < self._paths[0][0] or high > self._paths[0][1]:
+            if self._paths is not None:
+                low, high = min(low, self._paths[0][0]), max(high, self._paths[0][1])
+            self._paths = (low, high), SurfacePaths(_between(self.places.skin, low, high))
+        return self._paths[1]
+
+    def _laid(self, points: Points) -> Points:
+        """Return a curve evenly divided, on the skin; its ends stay."""
+        even = resample(points, STEP)
+        return nearest_faces(self.places.skin, even, self._tree)[1]
+
+
+def _between(skin: Mesh, low: float, high: float) -> Mesh:
+    """Return the skin between two heights [mm]."""
+    inside = (skin.vertices[:, 2] > low) & (skin.vertices[:, 2] < high)
+    return submesh(skin, np.asarray(inside[skin.faces].all(axis=1)))
