@@ -17,7 +17,7 @@ from core.messages import Message
 WAY, RING, ROOT = "way", "ring", "root"
 """How a seam runs: from place to place over the skin, at a level, or along the root of a breast."""
 
-REFERENCES = ("under", "bust", "waist", "hip", "crotch", "low")
+REFERENCES = ("under", "bust", "waist", "belly", "hip", "crotch", "low")
 """What levels are told from: the under-bust, the bust points, those of the lower trunk, the scan's edge."""
 
 
@@ -70,8 +70,13 @@ class Block:
 
     @property
     def needs_lower_trunk(self) -> bool:
-        """Return whether its levels are told from landmarks of the lower trunk."""
-        return any(reference in ("waist", "hip", "crotch") for reference, _ in self.levels.values())
+        """Return whether any of its places is told from the lower trunk."""
+        words = [
+            *(place for seam in self.seams for place in seam.places),
+            *(each.seed for each in self.panels),
+        ]
+        levels = {reference for reference, _ in self.levels.values()}
+        return bool(levels & {"waist", "belly", "hip", "crotch"}) or any("below" in word for word in words)
 
 
 @cache

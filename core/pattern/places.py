@@ -7,7 +7,8 @@
 to it, or so many mm beyond |
 | ``ring band 0.5``, ``ring band 0.5+8`` | at that share of the half round at a level, so many mm above |
 | ``front bust``, ``front bust+22``, ``back wing-5`` | front or back centre at a level |
-| ``point buttock`` | a landmark of that side |
+| ``point buttock`` | a landmark of that side, or of the middle |
+| ``r2c3``, ``below r6.5c9`` | on the control mesh by row and column, that of the bust or of the lower trunk |
 | ``... > neckline`` | the nearest place of a seam that is drawn already |
 
 A word may end with ``left`` or ``right`` for a side of its own.
@@ -21,8 +22,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.spatial import cKDTree
 
+from core.control_mesh.embedding import locate_on_grid
+from core.control_mesh.fit import BUST, LOWER, ControlMesh
 from core.errors import PatternError
+from core.geometry.closest_point import centroid_tree, nearest_faces
 from core.geometry.mesh import Floats, Mesh, Points
 from core.geometry.plane_sections import arc_length, interpolate
 from core.landmarks.lower_trunk.types import LowerLandmarks
@@ -30,22 +35,35 @@ from core.landmarks.torso.cross_sections import Level, trunk_levels
 from core.landmarks.types import SIDES, Landmarks
 from core.messages import Message
 from core.pattern.breast_map import BreastMap, breast_map
+from core.pipeline.build import Stages
 
 _NUMBER = r"(\d+(?:\.\d+)?)"
 _OFF = r"([+-]\d+(?:\.\d+)?)?"
 _ROOT = re.compile(rf"root {_NUMBER}(?:\*{_NUMBER})?{_OFF}")
 _RING = re.compile(rf"ring ([\w ]+?) {_NUMBER}{_OFF}")
 _CENTRE = re.compile(rf"(front|back) ([a-z][a-z ]*?){_OFF}")
+_CELL = re.compile(rf"(below )?r{_NUMBER}c{_NUMBER}")
 _BEARING = np.radians(2.0)  # between places of a ring [rad]
 
 
 @dataclass(frozen=True, eq=False)
 class BodyPlaces:
-    """The places of one body: its ``skin`` without noise, and its landmarks. Nothing is worked out twice."""
+    """The places of one body: its ``skin`` without noise, its landmarks, its control meshes by region.
+
+    Nothing is worked out twice.
+    """
 
     skin: Mesh
     landmarks: Landmarks
+    meshes: Mapping[str, ControlMesh]
     lower: LowerLandmarks | None = None
+
+    @classmethod
+    def of(cls, stages: Stages) -> BodyPlaces:
+        """Return the places of the body at rest of a design."""
+        meshes = {region.fitted.region: region.fitted for region in stages.regions}
+        lower = None if stages.lower is None else stages.lower.landmarks
+        return cls(stages.body.smoothed, stages.landmarks, meshes, lower)
 
     @cached_property
     def breasts(self) -> Mapping[str, BreastMap]:
@@ -116,21 +134,27 @@ class BodyPlaces:
     def _place(self, text: str, side: str, levels: Mapping[str, float]) -> Points | None:
         if text == "apex":
             return self.breasts[side].apex
+        if text.startswith("point "):
+            name = text.removeprefix("point ")
+            found = self._landmark(f"{name}_{side}")
+            return self._landmark(name) if found is None else found
+        if match := _CELL.fullmatch(text):
+            region = LOWER if match[1] else BUST
+            return self._cell(region, float(match[2]), float(match[3]), -1.0 if side == "right" else 1.0)
+        return self._measured(text, side, levels)
+
+    def _measured(self, text: str, side: str, levels: Mapping[str, float]) -> Points | None:
+        """Return a place on a root or at a level, None for a word that is neither."""
         if match := _ROOT.fullmatch(text):
             clock, breast = float(match[1]), self.breasts[side]
             far = float(breast.root_distance(clock)) * float(match[2] or 1.0) + float(match[3] or 0.0)
             return np.asarray(breast.places(np.array([clock]), np.array([far]))[0])
         if match := _RING.fullmatch(text):
-            return self.at_share(
-                self._height(match[1], levels) + float(match[3] or 0.0), float(match[2]), side
-            )
+            z = self._height(match[1], levels) + float(match[3] or 0.0)
+            return self.at_share(z, float(match[2]), side)
         if match := _CENTRE.fullmatch(text):
             z = self._height(match[2], levels) + float(match[3] or 0.0)
             return self.at_share(z, 0.0 if match[1] == "front" else 1.0, side or "left")
-        if text.startswith("point "):
-            return self._landmark(
-                f"{text.removeprefix('point ')}_{side}" if side else text.removeprefix("point ")
-            )
         return None
 
     def at_share(self, z: float, share: float, side: str) -> Points:
@@ -141,6 +165,24 @@ class BodyPlaces:
 
     def _height(self, name: str, levels: Mapping[str, float]) -> float:
         return levels[name] if name in levels else self.height(name)
+
+    def _cell(self, region: str, row: float, column: float, sign: float) -> Points | None:
+        """Return the place of a control mesh at a row and column, None for one beyond its rows."""
+        control = self.meshes.get(region)
+        if control is None:
+            raise PatternError(
+                Message("The block needs waist, hips and seat of the body."),
+                Message("Choose a scan that extends to mid-thigh, or a block for the bust."),
+            )
+        if not control.grid.has((row, column)):
+            return None
+        corners, weights = locate_on_grid(control.grid, np.array([[row, sign * column]]))
+        flat = np.einsum("kc,kcx->kx", weights, control.mesh.vertices[corners])
+        return np.asarray(nearest_faces(self.skin, flat, self._tree)[1][0])
+
+    @cached_property
+    def _tree(self) -> cKDTree:
+        return centroid_tree(self.skin)
 
     def _landmark(self, name: str) -> Points | None:
         every = {**self.landmarks.points, **(self.lower.points if self.lower is not None else {})}

@@ -25,6 +25,7 @@ from core.pipeline.build import Stages
 
 Built = Callable[[str], Stages]
 RADIUS = 70.0
+BUST_BLOCKS = [block.name for block in built_in_blocks() if not block.needs_lower_trunk]
 
 
 def ball() -> tuple[Mesh, Landmarks]:
@@ -65,8 +66,7 @@ def test_a_breast_that_a_hole_reaches_is_refused() -> None:
 
 @cache
 def drawing(stages: Stages) -> SeamDrawing:
-    lower = None if stages.lower is None else stages.lower.landmarks
-    return SeamDrawing(BodyPlaces(stages.body.smoothed, stages.landmarks, lower))
+    return SeamDrawing(BodyPlaces.of(stages))
 
 
 @cache
@@ -75,7 +75,7 @@ def curves(stages: Stages, block: str) -> dict[str, SeamCurve]:
 
 
 @pytest.mark.parametrize("sample", ["person", "mannequin"])
-@pytest.mark.parametrize("block", [block.name for block in built_in_blocks()])
+@pytest.mark.parametrize("block", BUST_BLOCKS)
 def test_all_blocks_lie_on_the_skin_of_the_samples(built: Built, sample: str, block: str) -> None:
     stages = built(sample)
     for curve in curves(stages, block).values():
@@ -83,6 +83,24 @@ def test_all_blocks_lie_on_the_skin_of_the_samples(built: Built, sample: str, bl
         assert np.abs(on_skin - curve.points).max() < 1e-6, curve.name
         steps = np.linalg.norm(np.diff(curve.points, axis=0), axis=1)
         assert 0.2 < steps.min() <= steps.max() < 9.0, f"{curve.name} is even"
+
+
+LOWER_BLOCKS = [block.name for block in built_in_blocks() if block.needs_lower_trunk]
+
+
+@pytest.mark.parametrize("block", LOWER_BLOCKS)
+def test_blocks_of_waist_and_hips_lie_on_the_whole_trunk(built: Built, block: str) -> None:
+    found = curves(trunk_stages(), block)
+    for curve in found.values():
+        _, on_skin = nearest_faces(trunk_stages().body.smoothed, curve.points)
+        assert np.abs(on_skin - curve.points).max() < 1e-6, curve.name
+    for side in ("left", "right"):
+        leg, gusset = found[f"leg edge {side}"].points, found[f"gusset edge {side}"].points
+        assert np.linalg.norm(leg[-1] - gusset[0]) < 0.1
+        assert np.linalg.norm(leg[0] - gusset[-1]) < 0.1, "closed round the leg"
+        assert 20.0 < abs(gusset[:, 0]).max() < 70.0
+    with pytest.raises(PatternError, match="waist, hips and seat"):
+        curves(built("person"), block)
 
 
 def test_seams_meet_where_they_share_a_place(built: Built) -> None:
