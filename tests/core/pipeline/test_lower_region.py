@@ -35,6 +35,12 @@ ROUTES: tuple[Mapping[str, float], ...] = (
     {"leg-opening-left": 0.9, "leg-opening-right": 0.9},
     {**CINCHER, **SLINGS, "hip": 0.95},
 )
+GIRDLE = {
+    **dict.fromkeys(("above-waist", "below-waist", "belly", "under-hip"), 0.95),
+    **dict.fromkeys(("waist", "high-hip", "hip"), 0.98),
+    **dict.fromkeys(("belly-panel", "low-belly-panel"), 0.96),
+    **{f"{each}-{side}": 0.975 for each in ("sling", "leg-opening") for side in ("left", "right")},
+}
 
 
 def moves(solution: Solution) -> Floats:
@@ -129,6 +135,22 @@ def test_the_adaptive_control_ends_where_the_exact_answer_is(lines: Mapping[str,
     assert np.abs(moves(run) - moves(exact)).max() < 0.02
     last = np.array([record.zones for record in run.lower.records[-10:]])
     assert np.ptp(last, axis=0).max() < 1e-5
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [{}, {"line_hold": "held"}, {"member_law": "co-rotated"}],
+    ids=["springs", "held", "co-rotated"],
+)
+def test_a_girdle_of_many_bands_settles_near_the_exact_answer(settings: Mapping[str, str]) -> None:
+    settled = solve(wearing(GIRDLE, volume="adaptive", **settings)).lower
+    exact = solve(wearing(GIRDLE, **settings)).lower
+    assert settled is not None
+    assert exact is not None
+    assert exact.verdict.motion == settled.verdict.motion == "settled"
+    assert np.abs(settled.control_points - exact.control_points).max() < 0.5
+    if not settings:
+        assert settled.verdict.iterations < 250
 
 
 def test_the_conventional_control_swings_only_beyond_its_limit() -> None:
