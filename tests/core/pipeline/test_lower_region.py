@@ -13,6 +13,8 @@ from core.analysis.length_limits.limits import all_limits, limits_of
 from core.control_mesh.lower_template import HIP_ROW, read_lower_template
 from core.document.design import Design, ScanSource
 from core.document.lower_trunk import LowerTrunk
+from core.garment.elastic_library import find_elastic
+from core.garment.pressure import pressure_limits, pressures
 from core.geometry.mesh import Floats
 from core.landmarks.torso.girths import girth_at
 from core.mechanics.solver_comparison import SolverComparison
@@ -210,3 +212,18 @@ def test_the_limits_of_a_lower_line_are_those_of_its_own_region() -> None:
     free = limits_of(wearing({"waist": 0.95}), "waist").onsets["strained"]
     assert free is not None
     assert free.ratio == strained.ratio, "what the bust wears does not matter"
+
+
+def test_a_lower_line_of_elastic_is_limited_by_its_pressure() -> None:
+    base, elastic = wearing({"waist": 0.95, "hip": 0.97}), find_elastic("Waistband, soft 25 mm")
+    stages = build(base.design.with_elastic("waist", elastic), base)
+    limits = limits_of(stages, "waist")
+    end = limits.below("pressing")
+    assert limits.pressure_known
+    assert end is not None
+    for ratio, beyond in ((end.ratio - 0.002, True), (end.ratio + 0.002, False)):
+        there = solve(build(stages.design.with_line("waist", ratio), stages)).lower
+        assert there is not None
+        pressed = pressures(there.stages, there.control_points)
+        assert (pressed["waist"].largest > pressure_limits().red_kpa) == beyond
+    assert not limits_of(stages, "hip").pressure_known, "no elastic: its newtons are estimates"
