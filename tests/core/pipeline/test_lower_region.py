@@ -13,6 +13,7 @@ from core.analysis.length_limits.limits import all_limits, limits_of
 from core.control_mesh.lower_template import HIP_ROW, read_lower_template
 from core.document.design import Design, ScanSource
 from core.document.lower_trunk import LowerTrunk
+from core.garment.curve_smoothing import LocalPlanes, centre_line
 from core.garment.elastic_library import find_elastic
 from core.garment.pressure import pressure_limits, pressures
 from core.geometry.mesh import Floats
@@ -212,6 +213,20 @@ def test_the_limits_of_a_lower_line_are_those_of_its_own_region() -> None:
     free = limits_of(wearing({"waist": 0.95}), "waist").onsets["strained"]
     assert free is not None
     assert free.ratio == strained.ratio, "what the bust wears does not matter"
+
+
+def test_lines_of_both_sides_of_an_even_body_are_equally_long() -> None:
+    lower = trunk_stages().lower
+    assert lower is not None
+    surface = LocalPlanes(lower.body.mesh)
+    long = {}
+    for line in lower.model.lines:
+        route = lower.routes[line.name]
+        laid = centre_line(route.path, surface, route.back, 20.0, sewn=route.sewn).points
+        long[line.name] = line.rest_length, np.linalg.norm(np.diff(laid, axis=0), axis=1).sum()
+    pairs = [name.removesuffix("-left") for name in long if name.endswith("-left")]
+    for name in pairs:
+        assert long[f"{name}-left"] == pytest.approx(long[f"{name}-right"], abs=1.0), name
 
 
 def test_a_lower_line_of_elastic_is_limited_by_its_pressure() -> None:
