@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from core.document.design import Design
+from core.document.lines import LOWER
 from core.document.lower_trunk import LowerTrunk, lower_lines_of
 from core.errors import LineError
 from core.garment.elastic_library import find_elastic, read_elastic
@@ -27,7 +28,9 @@ def with_lower_trunk(design: Design, requests: Sequence[str]) -> Design:
 
 def with_lines_and_elastics(stages: Stages, lines: Sequence[str], elastics: Sequence[str]) -> Stages:
     """Return the stages of a design with ``lines``, NAME=LENGTH, and ``elastics``, LINE=ELASTIC."""
-    if stages.lower_problem is not None and any(lower_lines_of(_name(request)) for request in lines):
+    below = {line.name.lower() for line in stages.design.lines_of(LOWER)}
+    asked = {_name(request) for request in lines}
+    if stages.lower_problem is not None and (asked & below or any(map(lower_lines_of, asked))):
         raise stages.lower_problem
     design = apply_lines(stages.design, stages.lines, lines)
     return build(apply_elastics(design, elastics), stages)

@@ -333,7 +333,7 @@ def bands(stages: Stages, hidden: Collection[str]) -> list[Band]:
     routes = stages.all_routes
     shown = [(line, routes[line.name]) for line in drawn(stages) if line.name not in hidden]
     return [
-        Band(line.name, route.path, line.colour, line.width, route.back, line.off, route.drawn)
+        Band(line.name, route.path, line.colour, line.width, route.back, line.off, route.drawn, route.sewn)
         for line, route in shown
     ]
 

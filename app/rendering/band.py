@@ -33,7 +33,8 @@ class Band:
     """What is drawn of one line: its path on the body at rest, (k, 3) [mm], colour and width [mm].
 
     ``back``, shape (b, 3) [mm], goes on round the back to where the path begins, or over the shoulder;
-    without it the band ends. One that is ``off`` is dashed; a path that was ``drawn`` is kept as it is.
+    without it the band ends. One that is ``off`` is dashed; a path that was ``drawn`` is kept as it is,
+    ends of one that is ``sewn`` are.
     """
 
     name: str
@@ -43,8 +44,9 @@ class Band:
     back: Points = field(default_factory=lambda: NO_BACK)
     off: bool = False
     drawn: bool = False
+    sewn: bool = False
 
     @property
     def route(self) -> LineRoute:
         """Return the path of the band."""
-        return LineRoute(self.path, self.back, self.drawn)
+        return LineRoute(self.path, self.back, self.drawn, self.sewn)

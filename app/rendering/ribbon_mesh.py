@@ -138,11 +138,11 @@ def _across(width: float) -> Floats:
 
 
 def _key(route: LineRoute, width: float, cased: bool) -> object:
-    return route.path.tobytes(), width, route.back.tobytes(), route.drawn, cased
+    return route.path.tobytes(), width, route.back.tobytes(), route.drawn, route.sewn, cased
 
 
 def _middle(route: LineRoute, surface: RibbonSurface, width: float) -> CentreLine:
-    return centre_line(route.path, surface, route.back, width, drawn=route.drawn)
+    return centre_line(route.path, surface, route.back, width, drawn=route.drawn, sewn=route.sewn)
 
 
 def build_ribbon(route: LineRoute, surface: RibbonSurface, width: float) -> Ribbon:

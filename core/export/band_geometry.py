@@ -104,7 +104,7 @@ def line_curves(
     curves = []
     for line in _worn(stages):
         route, width = stages.routes[line.name], widths.get(line.name, USUAL_WIDTH)
-        laid = centre_line(route.path, surface, route.back, width, drawn=route.drawn)
+        laid = centre_line(route.path, surface, route.back, width, drawn=route.drawn, sewn=route.sewn)
         places = laid.points + surface.displacement_weights(laid.points) @ moves
         curves.append(LineCurve(line.name, titles.get(line.name, line.name), *_halves(places, laid)))
     return tuple(curves)

@@ -1,7 +1,7 @@
 """Assessment: one overall verdict on a solved design, the worst of all that was checked (ours).
 
-Checked are convergence and shape of the run, contact pressure, bands that cannot do what they are set to,
-scan, landmarks and the fit of the control mesh.
+Checked are convergence and shape of the run, contact pressure, bands that cannot do what they are set to or
+enlarge the hips, scan, landmarks and the fit of the control mesh.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from core.garment.cut_list import CutList, CutRow, cut_list_of
 from core.garment.pressure import AMBER, GREEN, pressure_limits
 from core.garment.pressure_list import PressureList, PressureRow, pressure_list_of
 from core.landmarks.warnings import collect_warnings
+from core.measurements.lower_trunk import lower_before_after
 from core.mechanics.convergence import Convergence
 from core.messages import EMPTY, Length, LineName, Message, join, plain
 from core.pipeline.build import Stages
@@ -27,6 +28,9 @@ TOPICS = ("convergence", "shape", "band", "pressure", "fit", "landmarks")
 
 PUSHES = 0.5
 """A line that would have to push with more than this carries part of the shape [N]; an estimate."""
+
+HIP_BANDS, GROWS = ("high-hip", "hip", "under-hip"), 5.0
+"""Closed bands that are to reduce the hips, and what the largest hip girth may grow by under them [mm]."""
 
 FIT_LIMITS = (20.0, 10.0, 20.0)
 """Largest and 95 % deviation of the skin from the control mesh, and of its fold row from the landmark of the
@@ -109,7 +113,8 @@ def assess_with(
     stages, verdict, active = shown.stages, shown.verdict, not shown.stages.design.is_bare
     found = [*_run(shown, running), *_foundations(stages)]
     if verdict.is_valid:
-        found += [*_bands(cuts), *([UNKNOWN_PRESSURE] if failed else _pressures(pressed))]
+        found += [*_bands(cuts), *(_growth(shown) if pressed is not None and not running else ())]
+        found += [*([UNKNOWN_PRESSURE] if failed else _pressures(pressed))]
     ranked = sorted(found, key=lambda each: (-LEVELS.index(each.level), TOPICS.index(each.topic)))
     awaited = active and verdict.is_valid and pressed is None and not failed
     pending = "convergence" if running else "pressure" if awaited else ""
@@ -178,6 +183,23 @@ def _bands(cuts: CutList | None) -> Iterator[Finding]:
             )
             action = Message("Increase the cut length, or choose another elastic.")
             yield Finding("band", CAUTION, message, action, (row.line,), row.elongation)
+
+
+def _growth(shown: ShownState) -> Iterator[Finding]:
+    """Yield that the largest hip girth grows although closed bands reduce the hips."""
+    lower = shown.stages.lower
+    if lower is None:
+        return
+    bands = [line.name for line in lower.design.lines if line.name in HIP_BANDS and line.ratio < 1.0]
+    girths = lower_before_after(lower, shown.region_points[1]) if bands else {}
+    if "hip" not in girths:
+        return
+    before, after = girths["hip"]
+    grown = after.tape_mm - before.tape_mm
+    if grown > GROWS:
+        message = Message("The largest hip girth grows by {mm} beside the bands.", mm=Length(grown))
+        action = Message("Add or shorten a band at its height, such as Under hip.")
+        yield Finding("band", CAUTION, message, action, tuple(bands))
 
 
 def _slack(row: CutRow) -> Finding:

@@ -86,7 +86,7 @@ class _Laid:
 
 
 def _lay(route: LineRoute, surface: LocalPlanes, width: float) -> _Laid:
-    line = centre_line(route.path, surface, route.back, width, drawn=route.drawn)
+    line = centre_line(route.path, surface, route.back, width, drawn=route.drawn, sewn=route.sewn)
     return _Laid(line, surface.displacement_weights(line.points))
 
 

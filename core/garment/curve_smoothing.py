@@ -71,13 +71,20 @@ class CentreLine:
 
 
 def centre_line(
-    path: Points, surface: LocalPlanes, back: Points = NO_BACK, width: float = 0.0, *, drawn: bool = False
+    path: Points,
+    surface: LocalPlanes,
+    back: Points = NO_BACK,
+    width: float = 0.0,
+    *,
+    drawn: bool = False,
+    sewn: bool = False,
 ) -> CentreLine:
     """Return a smooth curve every ``STEP`` along ``path`` and, if it is given, round the ``back`` of it.
 
     Both have shape (k, 3) [mm]; the back goes on from the end of the path, to its beginning or elsewhere. A
     band of some ``width`` [mm] is laid as straight as it can lie on the skin with the path still under it;
-    one that was ``drawn`` there is kept where it is.
+    one that was ``drawn`` there is kept where it is. The ends of a ``sewn`` one stay, if it is open, even
+    where there is no skin, as at the back centre over the cleft.
     """
     from scipy.interpolate import CubicSpline  # noqa: PLC0415 (a fifth of a second that no start needs)
 
@@ -92,9 +99,9 @@ def centre_line(
     if drawn:
         points, normals = surface.project(evenly(taut, closed))
     else:
-        spline = CubicSpline(s, whole, bc_type="periodic" if closed else "not-a-knot")
-        laid, _ = surface.project(evenly(spline(at), closed))
-        points, normals = _pulled(laid, surface, closed, _ASIDE * width)
+        ends = whole[[0, -1]] if sewn and not closed else None
+        bent = CubicSpline(s, whole, bc_type="periodic" if closed else "not-a-knot")(at)
+        points, normals = _pulled(_laid(surface, evenly(bent, closed), ends)[0], surface, width, ends, closed)
     normals = unit(smooth(normals, 4, closed))
     nearest = np.asarray(cKDTree(taut).query(points)[1])
     off = np.einsum("kx,kx->k", taut[nearest] - points, normals)
@@ -105,13 +112,23 @@ def centre_line(
     return CentreLine(points, normals, lift, part, closed)
 
 
-def _pulled(start: Points, surface: LocalPlanes, closed: bool, aside: float) -> tuple[Points, Points]:
-    """Return a curve on the skin, pulled straight within ``aside`` [mm] of where it was, and normals."""
-    best = surface.project(evenly(smooth(start, 4, closed), closed, around=closed))
+def _laid(surface: LocalPlanes, points: Points, ends: Points | None) -> tuple[Points, Points]:
+    """Return ``points`` on the skin and the normals there, both (k, 3); ``ends`` (2, 3) stay in place."""
+    laid, normals = surface.project(points)
+    if ends is not None:
+        laid[[0, -1]] = ends
+    return laid, normals
+
+
+def _pulled(
+    start: Points, surface: LocalPlanes, width: float, ends: Points | None, closed: bool
+) -> tuple[Points, Points]:
+    """Return a curve on the skin, pulled straight as far as a band ``width`` [mm] may go, and normals."""
+    best = _laid(surface, evenly(smooth(start, 4, closed), closed, around=closed), ends)
     for _ in range(_PULLS):
-        pulled = surface.project(evenly(smooth(best[0], 32, closed), closed, around=closed))
+        pulled = _laid(surface, evenly(smooth(best[0], 32, closed), closed, around=closed), ends)
         far = np.asarray(cKDTree(pulled[0]).query(start)[0])
-        if far.max() > np.hypot(aside, 0.5 * STEP):
+        if far.max() > np.hypot(_ASIDE * width, 0.5 * STEP):
             break
         best = pulled
     return best

@@ -53,6 +53,11 @@ class CondensedTissue:
         """Return how far a point goes in an iteration, over the way to its balance [1]."""
         return RELAXATION
 
+    @property
+    def line_across(self) -> float:
+        """Return 1: across a line an iteration takes it to be as stiff as along it [1]."""
+        return 1.0
+
     def with_options(self, mechanics: ModelOptions) -> CondensedTissue:
         """Return the same tissue under other choices of how lines and volume act."""
         return replace(self, mechanics=mechanics)

@@ -26,7 +26,7 @@ from core.mechanics.iteration import HELD_GROWTH
 from core.mechanics.model import ConstrainedModel
 from core.mechanics.newton import LONGEST_STEP, Equilibrium, SlidingSurface, equilibrium_at
 from core.mechanics.potential import Evaluation, Potential
-from core.mechanics.springs import Springs, stretch_blocks
+from core.mechanics.springs import Springs
 from core.mechanics.tensegrity import TissueModel
 
 _NEAR_ENOUGH = 1e-6  # largest unbalanced force over the mean stiffness [mm]: the limit does not see less
@@ -83,7 +83,7 @@ class OscillationLimit:
         band = model.layout.band
         self._lower = self._triangle(model.tensegric.stiffness if slides else model.stiffness)
         if slides:
-            row, column, weight = sparse.find(sparse.tril(model.line_laplacian))
+            row, column, weight = sparse.find(sparse.tril(model.line_bound))
             self._row, each = row, 9 * np.arange(len(row))[:, None]
             a, b = (axis.ravel()[None, :] for axis in np.indices((3, 3)))
             self._of_lines = band.general(
@@ -257,11 +257,11 @@ def _double_lower_less_true(model: ConstrainedModel) -> tuple[sparse.csr_array, 
     true = over_axes(tensegric.stiffness, len(rest))  # it is the true one where nothing else is
     if figures:
         true = weighted_sum(tensegric.hessian_entries, [np.ones(1), *figures], rest.size)
-    line_true = _line_stiffness(segments, rest.size)
+    line_true = _stiffness_at_rest(segments)
     points = len(tensegric.free)
     return (
         sparse.csr_array(2.0 * lower_points(tensegric.stiffness, points, tensegric.relaxation) - true),
-        sparse.csr_array(2.0 * lower_points(model.line_laplacian, points, tensegric.relaxation) - line_true),
+        sparse.csr_array(2.0 * lower_points(model.line_bound, points, tensegric.relaxation) - line_true),
     )
 
 
@@ -269,11 +269,9 @@ def _solid_double_lower_less_true(model: ConstrainedModel, solid: CondensedTissu
     """Return 2 M - H at rest on a solid, all of it full, (3 f, 3 f)."""
     true = solid.hessian(np.zeros_like(solid.load))
     lower = lower_points(model.stiffness, len(solid.free), solid.relaxation)
-    return np.asarray(2.0 * lower - true - _line_stiffness(model.segments, solid.load.size))
+    return np.asarray(2.0 * lower - true - _stiffness_at_rest(model.segments))
 
 
-def _line_stiffness(segments: Springs, size: int) -> sparse.csr_array:
+def _stiffness_at_rest(segments: Springs) -> sparse.csr_array:
     """Return the stiffness of all segments at rest, where none is taut, shape (3 f, 3 f)."""
-    u = segments.rest_spans / segments.rest_lengths[:, None]
-    blocks = stretch_blocks(u, segments.stiffness, np.zeros(len(u)))
-    return weighted_sum([segments.entries], [blocks.ravel()], size)
+    return segments.stretched(segments.stiffness, np.zeros(len(segments.stiffness)))

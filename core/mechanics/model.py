@@ -72,19 +72,27 @@ class ConstrainedModel:
         return self._with_lines(tissue.stiffness_of(tissue.contacts(moved)))
 
     def _with_lines(self, own: Operator) -> Operator:
-        points = len(self.tensegric.free)
+        lines, points = self.line_bound, len(self.tensegric.free)
+        if own.shape == lines.shape == (points, points):
+            return compact(sparse.csr_array(sparse.csr_array(own) + lines))
         if own.shape[0] == points:
-            return compact(sparse.csr_array(sparse.csr_array(own) + self.line_laplacian))
-        return np.asarray(own + over_axes(self.line_laplacian, points))
+            own = over_axes(own, points).toarray()
+        return np.asarray(own + over_axes(lines, points))
 
     @cached_property
-    def line_laplacian(self) -> sparse.csr_array:
-        """Return what the segments of the lines add to the stiffness of an iteration, shape (f, f) [1]."""
-        if self.options.line_force != "implicit":
-            return self.segments.weighted(np.zeros(len(self.owner)))
+    def line_bound(self) -> sparse.csr_array:
+        """Return what the segments of the lines add to the stiffness of an iteration, an upper bound [1].
+
+        Shape (f, f), or (3 f, 3 f) where they are softer across: ``TissueModel.line_across``.
+        """
         # A long tail makes a segment soft along it, but not across: the upper bound is that without a tail.
-        bound = self.tapes_at_rest / self.segments.rest_lengths
-        return self.segments.weighted(self.segments.stiffness * bound)
+        bound = self.segments.stiffness * (self.tapes_at_rest / self.segments.rest_lengths)
+        if self.options.line_force != "implicit":
+            bound = np.zeros(len(self.owner))
+        across = self.tensegric.line_across
+        if across == 1.0:
+            return self.segments.weighted(bound)
+        return self.segments.stretched(bound, across * bound)
 
     @cached_property
     def sweep(self) -> GaussSeidelSweep:
@@ -93,7 +101,7 @@ class ConstrainedModel:
             return self.sweep_at(np.zeros_like(self.tensegric.load))
         if self.options.line_contact == "glued" or not len(self.owner):
             return bonded_sweep(self.stiffness, len(self.tensegric.free), self.tensegric.relaxation)
-        return sliding_sweep(self.tensegric.stiffness, self.line_laplacian, self.segments.nodes)
+        return sliding_sweep(self.tensegric.stiffness, self.line_bound, self.segments.nodes)
 
     def sweep_at(self, moved: Points) -> GaussSeidelSweep:
         """Return how the iteration from displacements (f, 3) [mm] answers: it depends on what cups touch."""

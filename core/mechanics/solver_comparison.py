@@ -26,8 +26,16 @@ NEAR = 0.05
 CALM_ERROR, CALM_STEP = 0.05, 20.0
 """Volume error [1] and largest move in a turn [mm] below which a state of a diverging run can be shown."""
 
-MOST_TURNS = 300
-"""Turns after a change of the targets at which a run is left as it is, settled or not."""
+MOST_TURNS, MOST_TURNS_OF_TRUNK = 300, 600
+"""Turns after a change of the targets at which a run is left as it is, settled or not.
+
+A trunk without firmness, or whose lines are ten times as stiff as usual, takes more of them than a bust.
+"""
+
+
+def most_turns(model: ConstrainedModel) -> int:
+    """Return the turns after which a run of the model is left as it is."""
+    return MOST_TURNS_OF_TRUNK if model.volume.separate else MOST_TURNS
 
 
 class ControlRun:
@@ -37,6 +45,7 @@ class ControlRun:
         self, model: ConstrainedModel, control: str, state: SolverState, watch: Watch | None
     ) -> None:
         self.control = control
+        self.most_turns = most_turns(model)
         self.state = self._calm = state
         self.records: list[Record] = [record(model, state, 0.0, watch)]
         self.reset_history()
@@ -62,7 +71,7 @@ class ControlRun:
     def is_finished(self) -> bool:
         """Return whether there is nothing more to see: settled, diverging, or long enough watched."""
         turns = self.state.iteration - self.changed_at
-        return turns > 0 and (turns >= MOST_TURNS or self.verdict.motion in ("settled", "diverging"))
+        return turns > 0 and (turns >= self.most_turns or self.verdict.motion in ("settled", "diverging"))
 
     @property
     def ended(self) -> bool:

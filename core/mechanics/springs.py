@@ -12,7 +12,14 @@ import numpy as np
 from scipy import sparse
 
 from core.geometry.mesh import Floats, Indices, Points, frozen
-from core.mechanics.banded_matrix import Entries, Operator, compact, member_entries, nonzero_entries
+from core.mechanics.banded_matrix import (
+    Entries,
+    Operator,
+    compact,
+    member_entries,
+    nonzero_entries,
+    weighted_sum,
+)
 
 _EYE = np.eye(3)
 
@@ -59,6 +66,11 @@ class Springs:
         """Return the stiffness (f, f) of members that have ``weight`` (s,) in all directions."""
         signs = sparse.csr_array(self.signs)
         return sparse.csr_array(signs.T @ sparse.diags_array(weight) @ signs)
+
+    def stretched(self, along: Floats, across: Floats) -> sparse.csr_array:
+        """Return the stiffness (3 f, 3 f) of members at rest, (s,) each ``along`` and ``across`` them."""
+        blocks = stretch_blocks(self.rest_spans / self.rest_lengths[:, None], along, across)
+        return weighted_sum([self.entries], [blocks.ravel()], 3 * self.signs.shape[1])
 
     def lengths(self, points: Points) -> Floats:
         """Return the lengths of the members at all points, shapes (s,) and (n, 3) [mm]."""

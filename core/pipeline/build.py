@@ -114,11 +114,12 @@ class Stages(RegionStages):
 
     @property
     def drawn_lines(self) -> tuple[Line, ...]:
-        """Return the lines that are drawn on the body: of the lower trunk, which has many, those worn."""
+        """Return the lines that are drawn on the body: below the bust those worn, or own ones."""
         if self.lower is None:
             return self.model.lines
-        worn = self.lower.design.active_lines()
-        return (*self.model.lines, *(line for line in self.lower.model.lines if line.name in worn))
+        below = self.lower.design
+        shown = below.active_lines() | {line.name for line in below.own_lines}
+        return (*self.model.lines, *(line for line in self.lower.model.lines if line.name in shown))
 
     @property
     def all_routes(self) -> Mapping[str, LineRoute]:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from core.control_mesh.back_length import Back
-from core.control_mesh.fit import ControlMesh
+from core.control_mesh.fit import LOWER, ControlMesh
 from core.control_mesh.skin_projection import points_on_skin
 from core.control_mesh.straps import BAND, NO_TAIL, Tail, strap_tail
 from core.document.lines import CustomLine
@@ -22,12 +22,14 @@ class LineRoute:
 
     ``path`` (k, 3) [mm] has a place for each vertex of the line. ``back`` (b, 3) [mm] goes on from its end:
     round the back to its beginning, or over the shoulder; it may be empty. A path that was ``drawn`` is kept
-    as it is; one through control points is only where a band lies about.
+    as it is; one through control points is only where a band lies about. Open ends of a ``sewn`` one stay:
+    those of slings meet at the back centre, in the air over the cleft, whose walls are no place for them.
     """
 
     path: Points
     back: Points = field(default_factory=lambda: NO_BACK)
     drawn: bool = False
+    sewn: bool = False
 
 
 def strap_tails(
@@ -55,7 +57,8 @@ def line_routes(
     beyond = {name: back.path for name, back in backs.items()} | {name: t.path for name, t in tails.items()}
     routes = {}
     for name, path in control.paths.items():
-        routes[name] = LineRoute(frozen(control.mesh.vertices[list(path)]), beyond.get(name, NO_BACK))
+        places = frozen(control.mesh.vertices[list(path)])
+        routes[name] = LineRoute(places, beyond.get(name, NO_BACK), sewn=control.region == LOWER)
     for name, embedded in control.embedded.items():
         places = points_on_skin(skin, control.mesh, embedded.weights)
         routes[name] = LineRoute(frozen(places), beyond.get(name, NO_BACK), drawn=True)

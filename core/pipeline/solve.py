@@ -27,7 +27,7 @@ from core.mechanics.iteration import Record, SolverState, initial_state, iterate
 from core.mechanics.newton import Equilibrium
 from core.mechanics.potential import Potential
 from core.mechanics.sensitivity import Rates, Sensitivities
-from core.mechanics.solver_comparison import assess_equilibrium, shape_of
+from core.mechanics.solver_comparison import assess_equilibrium, most_turns, shape_of
 from core.messages import LineName, Message
 from core.pipeline.build import Stages
 from core.pipeline.model_stages import line_targets
@@ -38,9 +38,6 @@ _NOT_FOUND = (
     Message("No equilibrium found for these line lengths."),
     Message("Set the lengths closer to 100 %, or choose an iterative volume control."),
 )
-
-MOST_TURNS = 300
-"""Turns after which a run is left as it is, settled or not."""
 
 
 class NoEquilibriumError(LineError):
@@ -218,8 +215,8 @@ class Solution:
 def solve(stages: Stages, turns: int | None = None, progress: Progress = quiet) -> Solution:
     """Solve the design of ``stages`` from the original shape.
 
-    Makes exactly ``turns`` iterations, or until converged (at most MOST_TURNS) if None; exact volume control
-    uses Newton steps instead. ``progress`` receives each step. Raises Cancelled.
+    Makes exactly ``turns`` iterations, or until converged (at most ``most_turns``) if None; exact volume
+    control uses Newton steps instead. ``progress`` receives each step. Raises Cancelled.
     """
     start = time.perf_counter()
     with one_blas_thread():
@@ -243,7 +240,7 @@ def _run_turns(
     targets = line_targets(stages.design, stages)
     records: list[Record] = []
     state = initial_state(stages.model)
-    most = MOST_TURNS if turns is None else turns
+    most = most_turns(stages.model) if turns is None else turns
     for now, measured in iterate(stages.model, lambda: targets, turns=most, watch=stages.watch):
         state = now
         records.append(measured)

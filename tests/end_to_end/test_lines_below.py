@@ -66,6 +66,7 @@ def test_a_line_on_the_belly_is_drawn_set_and_taken_back() -> None:
         row = window.lines.rows["line 1"]
         assert row.view.group == "waist"
         assert (row.view.own, row.view.constrained, row.view.splits) == (True, True, False)
+        assert window.view.viewport.scene.bands.ribbon("line 1") is not None, "drawn, though it is off"
         rest = session.frame.line_lengths["line 1"]
         drag(window, "line 1", -12)
         yield settled(window)

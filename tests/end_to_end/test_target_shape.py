@@ -179,7 +179,7 @@ def drags_the_bust_point(window: MainWindow) -> Script:
     viewport.set_view("left")
     desk.begin()
     yield answered(window)
-    left, right = (desk.handles.by_side[side] for side in ("left", "right"))
+    left, right = (desk.handles.by_name[f"bust_{side}"] for side in ("left", "right"))
     assert (left.isVisible(), right.isVisible()) == (True, False), "the far one is behind the body"
     now = dict(desk.answer.now)
     # Seen from the left the front is on the left: to the right is in.

@@ -49,7 +49,7 @@ def leaves_the_bust_in_sight(window: MainWindow) -> Script:
         desk.begin()
         yield answered(window)
         over = [view.floating.seen(panel) for panel in (view.tools, view.compare) if panel.isVisible()]
-        for handle in desk.handles.by_side.values():
+        for handle in desk.handles.by_name.values():
             spot = handle.mapTo(view, handle.rect().center())
             assert handle.isVisible()
             assert view.rect().contains(spot)

@@ -34,7 +34,7 @@ def draws_a_profile(window: MainWindow) -> Script:
     handles = desk.handles.profile.handles["profile left"]
     assert viewport.view.name == "left", "a profile is seen from its side"
     assert all(handle.isVisible() for handle in handles)
-    assert not any(handle.isVisible() for handle in desk.handles.by_side.values())
+    assert not any(handle.isVisible() for handle in desk.handles.by_name.values())
     curve = viewport.overlay.parentWidget().findChild(TargetCurve)
     assert curve.isVisible()
     assert np.abs(curve._wished - curve._reached).max() < 0.5, "it begins with the skin"
@@ -123,7 +123,7 @@ def drags_the_foremost_place(window: MainWindow) -> Script:
     choose(window, "apex")
     yield answered(window)
     assert list(desk.wishes) == ["apex lift", "apex out"], "free ones of the other place are gone"
-    left, frame = desk.handles.by_side["left"], window.session.frame
+    left, frame = desk.handles.by_name["bust_left"], window.session.frame
     foot = frame.stages.watch.apex_places(frame.control_points)[0]
     assert left._foot == pytest.approx(foot)
     assert foot[1:] == pytest.approx(frame.stages.watch.apexes(frame.control_points)[0])

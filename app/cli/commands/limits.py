@@ -38,6 +38,8 @@ OTHERS = {
 }
 """Other criteria, in JSON."""
 
+_NO_ELASTIC = "Contact pressure is checked for lines made of an elastic (--elastic), not for straps."
+
 _NO_BREAK = "\N{NO-BREAK SPACE}"
 
 
@@ -70,6 +72,8 @@ def _text(found: Sequence[Limits], stages: Stages, assessment: Assessment) -> It
         yield from (
             f"  {tone}: {words.replace(_NO_BREAK, ' ')}" for tone, words in legend_entries(zones).items()
         )
+    if not all(limits.pressure_known for limits in found if limits.found):
+        yield _NO_ELASTIC
     yield from map(str, immovable_lines(stages))
 
 

@@ -31,7 +31,7 @@ def add_options(parser: ArgumentParser) -> None:
     add_scan(parser)
     add_lines(parser)
     add_volume(parser)
-    count = "run exactly N iterations (default: until converged, at most 300)"
+    count = "run exactly N iterations (default: until converged, at most 300, waist and hips 600)"
     parser.add_argument("--iterations", type=_iterations, metavar="N", help=count)
     add_folder_output(parser)
 

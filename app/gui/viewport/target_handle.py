@@ -1,4 +1,4 @@
-"""A handle on the breast in a 3D view: it is dragged to where the skin is wished."""
+"""A handle on the body in a 3D view: it is dragged to where the skin is wished."""
 
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 
@@ -20,15 +20,15 @@ from core.geometry.mesh import Floats, Points
 SIZE, SMALL = 48, 26
 """Width and height of a handle with its arrows, and of one without [px]."""
 
-_UP, _OUT = np.array([0.0, 0.0, 1.0]), np.array([0.0, -1.0, 0.0])
 _FLATTEST = 0.35  # a way seen shorter than this part of a mm across points at the eye
-_FACING = {"left": np.array([0.42, -0.91, 0.0]), "right": np.array([-0.42, -0.91, 0.0])}  # of each breast
+_ASIDE, _AHEAD = 0.42, 0.91  # how far the skin of a side faces to that side, and to front or back [1]
 
 
 class TargetHandle(Handle):
-    """A knob where a place of the breast on a ``side`` is wished, with a thread to where it is.
+    """A knob where a place of the body on a ``side`` is wished, with a thread to where it is.
 
-    ``name`` is heard. A ``small`` one has neither arrows nor thread.
+    ``side`` is "left", "right", or nothing in the middle. ``name`` is heard. A ``small`` one has neither
+    arrows nor thread. ``ways`` tell whether it goes up, and out: to the front, or ``behind`` to the back.
 
     ``dragged`` carries each step up and out [mm]: of the two ways those that do not point at the eye. Arrow
     keys are such steps too, between ``taken`` and ``dropped``.
@@ -36,11 +36,22 @@ class TargetHandle(Handle):
 
     dragged = Signal(float, float)
 
-    def __init__(self, viewport: Viewport, side: str, name: str, *, small: bool = False) -> None:
+    def __init__(
+        self,
+        viewport: Viewport,
+        side: str,
+        name: str,
+        *,
+        small: bool = False,
+        behind: bool = False,
+        ways: tuple[bool, bool] = (True, True),
+    ) -> None:
         self._size = SMALL if small else SIZE
         tip = tr("Drag to the target position (Shift: fine, Esc: cancel). Arrow keys: {step}")
         super().__init__(viewport, self._size, name, tip.format(step=length(arrow_step(), 0)))
-        self.side, self._small = side, small
+        self.side, self._small, self._behind = side, small, behind
+        up_and_out = np.array([[0.0, 0.0, 1.0], [0.0, 1.0 if behind else -1.0, 0.0]])
+        self._directions = up_and_out * np.array(ways)[:, None]
         self._place, self._foot = np.zeros(3), np.zeros(3)
         self._ways = np.zeros((2, 2))  # of one mm up and out over the picture, as columns [px]
         self._wanted = False
@@ -57,8 +68,14 @@ class TargetHandle(Handle):
         self._wanted = False
         self._stand_anew()
 
+    @property
+    def can_be_dragged(self) -> bool:
+        """Return whether any of its ways is seen: it may point at the eye."""
+        return bool(self._ways.any())
+
     def _stand_anew(self) -> None:
-        shown = self._wanted and self._viewport.shows_body and faces(self._viewport.scene.view, self.side)
+        facing = faces(self._viewport.scene.view, self.side, self._behind)
+        shown = self._wanted and self._viewport.shows_body and facing
         if self._thread is not None:
             self._thread.setVisible(shown)
         if not shown:
@@ -66,7 +83,7 @@ class TargetHandle(Handle):
                 self.hide()
             return
         view, room = self._viewport.scene.view, (self._viewport.width(), self._viewport.height())
-        around = np.stack([self._place, self._place + _UP, self._place + _OUT, self._place + view.axes[0]])
+        around = self._place + np.stack([np.zeros(3), *self._directions, view.axes[0]])
         spot, up, out, across = view.to_picture(around, *room)[:, :2]
         full = max(float(np.linalg.norm(across - spot)), 1e-6)
         ways = np.stack([up - spot, out - spot], axis=1)
@@ -147,9 +164,10 @@ class TargetHandle(Handle):
             painter.restore()
 
 
-def faces(view: View, side: str) -> bool:
-    """Return whether the breast of a side is visible from a view."""
-    return bool(view.axes[2] @ _FACING[side] > 0.0)
+def faces(view: View, side: str, behind: bool = False) -> bool:
+    """Return whether the front of a side, or its back, is visible from a view; the middle is from both."""
+    across = {"left": (_ASIDE,), "right": (-_ASIDE,)}.get(side, (_ASIDE, -_ASIDE))
+    return any(view.axes[2] @ (x, _AHEAD if behind else -_AHEAD, 0.0) > 0.0 for x in across)
 
 
 class _Thread(QWidget):

@@ -11,7 +11,7 @@ import numpy as np
 from core.geometry.mesh import Points
 from core.mechanics.convergence import CONVERGED_STEP, Convergence
 from core.mechanics.iteration import SolverState, initial_state, step
-from core.mechanics.solver_comparison import COMPARED_CONTROLS, MOST_TURNS, ControlRun, carried, shape_of
+from core.mechanics.solver_comparison import COMPARED_CONTROLS, ControlRun, carried, shape_of
 from core.pipeline.build import Stages
 from core.pipeline.model_stages import line_targets
 from core.pipeline.solve import exact_equilibrium, solve_region
@@ -204,5 +204,5 @@ def _swings_on(run: ControlRun) -> bool:
     if turns < _SEEN or turns % _LATE or run.verdict.motion != "vibrating":
         return False
     early, late = (max(one.step for one in run.records[part]) for part in (_EARLIER, _LATEST))
-    fades = min(late / early, 1.0) ** ((MOST_TURNS - turns) / _LATE)
+    fades = min(late / early, 1.0) ** ((run.most_turns - turns) / _LATE)
     return bool(late * fades > _CLEARLY * CONVERGED_STEP)

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from scipy.spatial import cKDTree
 
 from core.analysis.inverse_design.quantity import SIDES, QuantityFamily, Read, Reading, Weighted
+from core.deformation.tffd import FewPlaces
 from core.geometry.mesh import Points
 from core.pipeline.build import Stages
 from core.pipeline.lower_region import LowerStages
@@ -52,10 +55,16 @@ def _read_belly(stages: Stages, _: str) -> Read:
 
 def _followed(lower: LowerStages, names: tuple[str, ...], weights: Points) -> Read:
     """Return what reads how far the vertices nearest to landmarks move, times ``weights`` (k, 3)."""
+    few = followed_marks(lower, names)
+    return Weighted(few.places, few.gradient, weights, lower.control.mesh.vertices)
+
+
+@lru_cache(maxsize=8)  # handles on the body follow them in every frame
+def followed_marks(lower: LowerStages, names: tuple[str, ...]) -> FewPlaces:
+    """Return the vertices nearest to landmarks of the lower trunk, in their order."""
     marks = np.stack([lower.landmarks.position(name) for name in names])
     _, rows = cKDTree(lower.binding.rest_moving).query(marks)
-    few = lower.binding.few(np.asarray(rows, dtype=np.int64))
-    return Weighted(few.places, few.gradient, weights, lower.control.mesh.vertices)
+    return lower.binding.few(np.asarray(rows, dtype=np.int64))
 
 
 def _lower(stages: Stages) -> LowerStages:

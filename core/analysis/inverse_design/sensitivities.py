@@ -164,7 +164,7 @@ class _RegionAnswers:
         if self._last is not None and not from_rest and np.array_equal(self._last[0], own):
             return self._last[1]  # nothing but another region changes
         near = None if from_rest else self._nearest(own)
-        found = self._solved(lengths, near, NEWTON_LIMIT if near is None else limit)
+        found = self._solved(own, near, NEWTON_LIMIT if near is None else limit)
         self._last = own, found
         return found
 
@@ -173,12 +173,11 @@ class _RegionAnswers:
             return None
         return min(self._known, key=lambda known: float(np.abs(known[0] - own).max(initial=0.0)))[1]
 
-    def _solved(self, lengths: Floats, near: Equilibrium | None, limit: int) -> _RegionAnswer:
+    def _solved(self, own: Floats, near: Equilibrium | None, limit: int) -> _RegionAnswer:
         ratios = self._ratios.copy()
-        for group, length in zip(self._groups, lengths, strict=True):
+        for group, length in zip(filter(None, self._groups), own, strict=True):
             ratios[group] = PERCENT * length
         answer = exact_solution(self._stages, tuple(ratios.tolist()), near, limit)
-        own = np.array([length for group, length in zip(self._groups, lengths, strict=True) if group])
         self._known = [*self._known[-_KEPT:], (own, answer.balance)]
         points, rates = answer.place.points, self._rates(answer)
         tensions, by_tensions = answer.tensions(rates, self._natural)

@@ -18,7 +18,7 @@ from core.landmarks.lower_trunk.outline_profiles import (
     smoothed,
     tapes,
 )
-from core.landmarks.lower_trunk.sections import STEP, LowerSections
+from core.landmarks.lower_trunk.sections import STEP, LowerSection, LowerSections
 from core.landmarks.torso.girths import MUCH
 from core.landmarks.types import Landmark
 from core.messages import Message
@@ -37,6 +37,9 @@ WAIST_DEPTH = 6.0
 
 WAIST_BELOW_BUST = 80.0
 """A body without a waist has it so far under the under-bust [mm, at scale 1]. Source: measured on bodies."""
+
+LEGS_APART = 2.0
+"""The middle between the legs is that so far under the crotch, where two outlines just part [mm]. Ours."""
 
 BRIDGE_UP = 30.0
 """The depth of the trunk in its middle is measured so far above the crotch [mm, at scale 1]. Ours."""
@@ -78,10 +81,7 @@ def crotch(sections: LowerSections, scale: float) -> Landmark:
     if z is None:
         raise no_crotch(sections)
     here, above = sections.at(z), sections.at(z + BRIDGE_UP * scale).trunk
-    left, right = here.legs
-    assert left is not None
-    assert right is not None
-    x = 0.5 * (float(left[:, 0].min()) + float(right[:, 0].max()))
+    x = _between(sections.at(z - LEGS_APART), _between(here, sections.middle))
     depth = crossings(above, x) if above is not None else np.empty(0)
     place = _under(sections, x, z)
     rule = Message("Highest level with an outline of each leg.")
@@ -90,6 +90,14 @@ def crotch(sections: LowerSections, scale: float) -> Landmark:
     if max(here.bridged, sections.at(z + 2.0).bridged) > 5.0:
         return Landmark("crotch", place, 0.3, Message("The scan has a hole at the crotch: estimate."))
     return Landmark("crotch", place, 0.95, rule)
+
+
+def _between(section: LowerSection, otherwise: float) -> float:
+    """Return the middle between the insides of both legs [mm]; ``otherwise`` where one is not seen."""
+    left, right = section.legs
+    if left is None or right is None:
+        return otherwise
+    return 0.5 * (float(left[:, 0].min()) + float(right[:, 0].max()))
 
 
 def no_crotch(sections: LowerSections) -> LandmarkError:

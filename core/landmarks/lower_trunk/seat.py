@@ -6,7 +6,7 @@ import numpy as np
 
 from core.geometry.mesh import SIGNS, Floats
 from core.geometry.plane_sections import arc_length, curvature
-from core.landmarks.lower_trunk.outline_profiles import FINE, back, heights, smoothed
+from core.landmarks.lower_trunk.outline_profiles import FINE, back, crossings, heights, peak, smoothed
 from core.landmarks.lower_trunk.sections import STEP, LowerSection, LowerSections
 from core.landmarks.types import SIDES, Landmark
 from core.messages import Message
@@ -55,7 +55,7 @@ def buttock_point(sections: LowerSections, side: int, low: float, scale: float) 
     fine = heights(float(z[0]), float(z[-1]), 0.5)
     depth = np.interp(fine, z, smoothed(places[:, 1], STEP, STEP))
     at = float(fine[depth > np.nanmax(depth) - FLAT_TOP].mean())
-    x, y = _hindmost(sections.at(at), sections.middle, side)
+    x, y = _middle_of_hindmost(sections.at(at), sections.middle, side)
     inside = z[0] + 8.0 < at < z[-1] - 8.0
     usual = at - low < HIGH_SEAT * scale
     rule = Message("Most backward point of the side.")
@@ -73,6 +73,17 @@ def _hindmost(section: LowerSection, middle: float, side: int) -> tuple[float, f
         return np.nan, np.nan
     x, y, _ = own[np.argmax(own[:, 1])]
     return float(x), float(y)
+
+
+def _middle_of_hindmost(section: LowerSection, middle: float, side: int) -> tuple[float, float]:
+    """Return the middle of the skin that is hindmost within ``FLAT_TOP``: a single vertex is chance."""
+    x, y = _hindmost(section, middle, side)
+    if section.trunk is None or np.isnan(x):
+        return x, y
+    own = section.trunk[SIGNS[side] * (section.trunk[:, 0] - middle) > NEAR_MIDDLE]
+    flat = own[own[:, 1] > y - FLAT_TOP, 0]
+    x = 0.5 * float(flat.min() + flat.max())
+    return x, float(crossings(section.trunk, x)[-1])
 
 
 def gluteal_fold(sections: LowerSections, side: int, low: float, point: Landmark) -> Landmark:
@@ -95,9 +106,10 @@ def gluteal_fold(sections: LowerSections, side: int, low: float, point: Landmark
         place = np.array([x, float(point.position[1]), usual])
         return Landmark(name, place, 0.1, NOT_SHOWN)
     best = int(np.nanargmax(score))
-    place = np.array([x, np.interp(z[best], curve[:, 2], curve[:, 1]), z[best]])
+    level, _ = peak(z, score)
+    place = np.array([x, np.interp(level, curve[:, 2], curve[:, 1]), level])
     sharp, edge = float(mean[best]), np.isnan(score[max(best - 2, 0) : best + 3]).any()
-    if _thighs_touch(sections.at(float(z[best])), sections.middle):
+    if _thighs_touch(sections.at(level), sections.middle):
         return Landmark(name, place, 0.35, Message("The thighs touch under the fold: approximate."), curve)
     if edge or sharp < CREASE:
         return Landmark(name, place, 0.35, Message("No crease under the buttock: approximate."), curve)

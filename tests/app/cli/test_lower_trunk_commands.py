@@ -122,3 +122,21 @@ def test_cut_list_and_drawings_have_the_lines_below(
     drawings = ("--lines", str(tmp_path / "lines.dxf"), "--strips", str(tmp_path / "strips.svg"))
     assert main(["export", TRUNK[0], *worn, *drawings]) == 0
     assert "Seat sling" in (tmp_path / "strips.svg").read_text("utf-8")
+
+
+def test_own_lines_below_the_bust_and_bands_over_both_regions(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    belt = ("--path", "belt=r4c9:r4c11,r4c-10,r4c-9,lower")
+    band = ("--path", "front=r2c2,r1c2", "--path", "front lower=r1c2:r5c2,lower,continues front")
+    worn = ("--line", "belt=96%", "--line", "front=-10mm")
+    assert main(["solve", *TRUNK, *belt, *band, *worn, "--volume", "exact", "--out", str(tmp_path)]) == 0
+    report = json.loads((tmp_path / "report.json").read_text("utf-8"))
+    below, above = report["lower_trunk"]["lines"], report["lines"]["front"]
+    assert below["belt"]["set_mm"] == pytest.approx(0.96 * below["belt"]["rest_mm"])
+    shorter = [each["rest_mm"] - each["set_mm"] for each in (above, below["front lower"])]
+    assert sum(shorter) == pytest.approx(10.0), "the length is that of the whole band"
+    assert shorter[0] / above["rest_mm"] == pytest.approx(shorter[1] / below["front lower"]["rest_mm"])
+    capsys.readouterr()
+    assert main(["solve", *PERSON, *belt, "--line", "belt=96%", "--out", str(tmp_path)]) == 2
+    assert "The scan ends above the crotch" in capsys.readouterr().err

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
+from whole_trunk import trunk_stages
 
 from app.i18n.catalog import tr, using_language
 from app.presenters.assessment import IDLE, assessment_lines, assessment_view
@@ -14,11 +15,23 @@ from core.analysis.diagnosis.trial_run import run_trial
 from core.document.design import Design
 from core.document.elastic import Elastic
 from core.export.report_data import Heading, make_report
-from core.garment.assessment import BAD, CAUTION, GOOD, PENDING, PUSHES, Assessment, assess, assess_with
+from core.garment.assessment import (
+    BAD,
+    CAUTION,
+    GOOD,
+    GROWS,
+    PENDING,
+    PUSHES,
+    Assessment,
+    assess,
+    assess_with,
+)
 from core.garment.cut_list import CutList, CutRow, cut_list
+from core.garment.presets import find_preset, with_preset
 from core.garment.pressure import mmhg, pressure_limits
 from core.garment.pressure_list import PressureList, PressureRow, pressure_list
 from core.garment.tension import line_tensions
+from core.measurements.lower_trunk import lower_before_after
 from core.mechanics.convergence import Convergence
 from core.mechanics.mesh_quality import MeshQuality
 from core.messages import Length
@@ -176,6 +189,22 @@ def test_an_elastic_beyond_its_table_is_in_it(built: Built) -> None:
     assert "the table of the elastic ends at 2 N" in str(listed.refused)
     band = [each for each in assess(solution).findings if each.topic == "band"]
     assert [(each.level, each.message) for each in band] == [(BAD, listed.refused)]
+
+
+def test_bands_that_enlarge_the_hips_beside_them_are_told_with_what_helps() -> None:
+    girdle = with_preset(trunk_stages().design, find_preset("girdle"))
+    assert girdle.lower is not None
+    found = solve(build(girdle.with_line("under-hip", None), trunk_stages()))
+    assert found.lower is not None
+    before, after = lower_before_after(found.lower.stages, found.lower.control_points)["hip"]
+    told = [each for each in assess(found).findings if each.topic == "band"]
+    (growth,) = told
+    assert after.tape_mm - before.tape_mm > GROWS
+    assert f"{after.tape_mm - before.tape_mm:.0f} mm" in str(growth.message)
+    assert growth.level == CAUTION
+    assert set(growth.lines) == {"high-hip", "hip"}
+    helped = solve(build(girdle, trunk_stages()))
+    assert not [each for each in assess(helped).findings if each.topic == "band"]
 
 
 def test_no_line_is_no_result_yet(sure: Solution) -> None:

@@ -13,6 +13,9 @@ from core.analysis.length_limits.limits import all_limits, limits_of
 from core.control_mesh.lower_template import HIP_ROW, read_lower_template
 from core.document.design import Design, ScanSource
 from core.document.lower_trunk import LowerTrunk
+from core.garment.curve_smoothing import LocalPlanes, centre_line
+from core.garment.elastic_library import find_elastic
+from core.garment.pressure import pressure_limits, pressures
 from core.geometry.mesh import Floats
 from core.landmarks.torso.girths import girth_at
 from core.mechanics.solver_comparison import SolverComparison
@@ -35,6 +38,12 @@ ROUTES: tuple[Mapping[str, float], ...] = (
     {"leg-opening-left": 0.9, "leg-opening-right": 0.9},
     {**CINCHER, **SLINGS, "hip": 0.95},
 )
+GIRDLE = {
+    **dict.fromkeys(("above-waist", "below-waist", "belly", "under-hip"), 0.95),
+    **dict.fromkeys(("waist", "high-hip", "hip"), 0.98),
+    **dict.fromkeys(("belly-panel", "low-belly-panel"), 0.96),
+    **{f"{each}-{side}": 0.975 for each in ("sling", "leg-opening") for side in ("left", "right")},
+}
 
 
 def moves(solution: Solution) -> Floats:
@@ -131,6 +140,22 @@ def test_the_adaptive_control_ends_where_the_exact_answer_is(lines: Mapping[str,
     assert np.ptp(last, axis=0).max() < 1e-5
 
 
+@pytest.mark.parametrize(
+    "settings",
+    [{}, {"line_hold": "held"}, {"member_law": "co-rotated"}],
+    ids=["springs", "held", "co-rotated"],
+)
+def test_a_girdle_of_many_bands_settles_near_the_exact_answer(settings: Mapping[str, str]) -> None:
+    settled = solve(wearing(GIRDLE, volume="adaptive", **settings)).lower
+    exact = solve(wearing(GIRDLE, **settings)).lower
+    assert settled is not None
+    assert exact is not None
+    assert exact.verdict.motion == settled.verdict.motion == "settled"
+    assert np.abs(settled.control_points - exact.control_points).max() < 0.5
+    if not settings:
+        assert settled.verdict.iterations < 250
+
+
 def test_the_conventional_control_swings_only_beyond_its_limit() -> None:
     for factor, motion in ((0.97, "settled"), (1.05, "vibrating")):
         lower = wearing({"waist": 0.97}, volume="conventional").lower
@@ -188,3 +213,32 @@ def test_the_limits_of_a_lower_line_are_those_of_its_own_region() -> None:
     free = limits_of(wearing({"waist": 0.95}), "waist").onsets["strained"]
     assert free is not None
     assert free.ratio == strained.ratio, "what the bust wears does not matter"
+
+
+def test_lines_of_both_sides_of_an_even_body_are_equally_long() -> None:
+    lower = trunk_stages().lower
+    assert lower is not None
+    surface = LocalPlanes(lower.body.mesh)
+    long = {}
+    for line in lower.model.lines:
+        route = lower.routes[line.name]
+        laid = centre_line(route.path, surface, route.back, 20.0, sewn=route.sewn).points
+        long[line.name] = line.rest_length, np.linalg.norm(np.diff(laid, axis=0), axis=1).sum()
+    pairs = [name.removesuffix("-left") for name in long if name.endswith("-left")]
+    for name in pairs:
+        assert long[f"{name}-left"] == pytest.approx(long[f"{name}-right"], abs=1.0), name
+
+
+def test_a_lower_line_of_elastic_is_limited_by_its_pressure() -> None:
+    base, elastic = wearing({"waist": 0.95, "hip": 0.97}), find_elastic("Waistband, soft 25 mm")
+    stages = build(base.design.with_elastic("waist", elastic), base)
+    limits = limits_of(stages, "waist")
+    end = limits.below("pressing")
+    assert limits.pressure_known
+    assert end is not None
+    for ratio, beyond in ((end.ratio - 0.002, True), (end.ratio + 0.002, False)):
+        there = solve(build(stages.design.with_line("waist", ratio), stages)).lower
+        assert there is not None
+        pressed = pressures(there.stages, there.control_points)
+        assert (pressed["waist"].largest > pressure_limits().red_kpa) == beyond
+    assert not limits_of(stages, "hip").pressure_known, "no elastic: its newtons are estimates"

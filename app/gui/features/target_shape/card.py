@@ -82,7 +82,7 @@ class TargetCard(QWidget):
         self.link.setChecked(True)
         self.link.toggled.connect(self.linked)
         row.addWidget(self.hand, 1)
-        row.addWidget(self.link)
+        row.addWidget(self.link, 0, Qt.AlignmentFlag.AlignRight)
         return row
 
     def _headed(self) -> QWidget:
@@ -173,7 +173,6 @@ class TargetCard(QWidget):
     def show_hands(self, shown: bool) -> None:
         """Show what handles on the bust are dragged at, unless no line reshapes the bust."""
         self.hand.setVisible(shown)
-        self.link.setVisible(shown)
 
     def show_hand(self, kind: str) -> None:
         """Show what the handles drag; a profile is that of one side."""

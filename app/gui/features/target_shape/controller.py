@@ -131,10 +131,7 @@ class TargetShapeController(QObject):
         self.all_wishes, self.answer, self._apply_due = replace(wishes, limit=limit), None, False
         self.back.remember()
         self._pages.setCurrentWidget(self.card)
-        if (self.ground.design or self._session.design).lines:
-            self.drawing.choose("bust")
-        else:
-            self.drawing.turn_to("bust")
+        self.drawing.choose("bust")
         self.steps.forget()
         self.card.take_focus(next(iter(self.wishes), ""))
 

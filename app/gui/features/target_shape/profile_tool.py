@@ -43,9 +43,10 @@ class ProfileTool(QObject):
         """
         controller = self._controller
         if kind == "profile" and not controller.drawn:
-            self.begin(self._side())
+            self.begin(self.side)
             return
-        if kind in KINDS:
+        design = controller.ground.design
+        if kind in KINDS and design is not None and design.lines:
             for name in (name for names in KINDS.values() for name in names):
                 if controller.wishes.get(name) is None and name not in KINDS[kind]:
                     controller.wishes.pop(name, None)
@@ -133,6 +134,8 @@ class ProfileTool(QObject):
         untouched = kind == "profile" and any(each.is_unchanged for each in self._controller.drawn.values())
         if self._controller.goals() and not untouched:
             return ""
+        if kind != "profile" and (design := self._controller.ground.design) and not design.lines:
+            return tr("Enter a value or drag a handle on the body.")
         hints = {
             "bust": tr("Enter a value or drag the handle at the bust point."),
             "apex": tr("Enter a value or drag the handle at the apex."),
@@ -146,7 +149,9 @@ class ProfileTool(QObject):
         self.turn_to("profile")
         self._controller.steps.note()
 
-    def _side(self) -> str:
+    @property
+    def side(self) -> str:
+        """Return the side from which the body is looked at, about."""
         return "right" if self._viewport.view.axes[2][0] < -_LEVEL else "left"
 
     def look_at(self, profile: ProfileCurve) -> None:
