@@ -19,10 +19,10 @@ def triangulate(outline: Floats, least: float = 0.0) -> tuple[Faces, Floats]:
     ours; ears after Meisters 1975.
     """
     rest = np.arange(len(outline))
-    teeth, rest = _clipped(outline, rest, TOOTH)
+    teeth, rest = clip_ears(outline, rest, TOOTH)
     faces, inside = _even(outline, rest, least)
     if faces is None:
-        faces, inside = _clipped(outline, rest, np.inf)[0], np.empty((0, 2))
+        faces, inside = clip_ears(outline, rest, np.inf)[0], np.empty((0, 2))
     return np.concatenate([teeth, faces]), inside
 
 
@@ -44,7 +44,7 @@ def _even(outline: Floats, rest: Indices, least: float) -> tuple[Faces | None, F
     grid = np.stack(np.meshgrid(columns, rows), axis=-1)
     grid[1::2, :, 0] += 0.5 * step
     places = grid.reshape(-1, 2)
-    places = places[_inside(ring, places)]
+    places = places[inside_polygon(ring, places)]
     away = np.asarray(cKDTree(_densely(ring)).query(places)[0])
     places = places[away > 0.6 * step]
     try:
@@ -52,7 +52,7 @@ def _even(outline: Floats, rest: Indices, least: float) -> tuple[Faces | None, F
     except QhullError:
         return None, none
     corners = np.concatenate([ring, places])
-    faces = faces[_inside(ring, corners[faces].mean(axis=1))]
+    faces = faces[inside_polygon(ring, corners[faces].mean(axis=1))]
     a, b, c = (corners[faces[:, k]] for k in range(3))
     turn = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
     faces = np.where((turn < 0.0)[:, None], faces[:, ::-1], faces)
@@ -75,7 +75,7 @@ def _follows(faces: Faces, count: int) -> bool:
     return len(np.unique(keys)) == len(keys) and np.array_equal(free, wanted)
 
 
-def _inside(ring: Floats, places: Floats) -> Flags:
+def inside_polygon(ring: Floats, places: Floats) -> Flags:
     """Return which places lie in the polygon, shape (k,)."""
     a, b = ring, np.roll(ring, -1, axis=0)
     x, y = places[:, :1], places[:, 1:]
@@ -85,7 +85,7 @@ def _inside(ring: Floats, places: Floats) -> Flags:
     return np.asarray((spans & right).sum(axis=1) % 2 == 1)
 
 
-def _clipped(outline: Floats, rest: Indices, sharpest: float) -> tuple[Faces, Indices]:
+def clip_ears(outline: Floats, rest: Indices, sharpest: float) -> tuple[Faces, Indices]:
     """Cut off ears sharper than ``sharpest`` [rad], the sharpest first; return them and what is left."""
     ears: list[tuple[int, int, int]] = []
     while len(rest) > 2 and (len(rest) > 3 or sharpest == np.inf):
@@ -109,4 +109,4 @@ def _is_empty(ring: Floats, ear: int) -> bool:
     keep = np.ones(len(ring), dtype=bool)
     corners = [ear - 1, ear, (ear + 1) % len(ring)]
     keep[corners] = False
-    return not _inside(ring[corners], ring[keep]).any()
+    return not inside_polygon(ring[corners], ring[keep]).any()

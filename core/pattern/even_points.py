@@ -1,0 +1,109 @@
+"""Even points over a panel: its border and slits as given, equilateral triangles within."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import sparse
+from scipy.spatial import Delaunay, QhullError, cKDTree
+
+from core.geometry.mesh import Faces, Floats, Indices, boundary_loops, half_edges
+from core.geometry.triangulate import clip_ears, inside_polygon
+
+_CLEAR = 0.6
+"""Points within keep so many spacings from border and slits. Source: ours."""
+
+
+def grid_within(ring: Floats, fixed: Floats, spacing: float) -> Floats:
+    """Return places of an even grid in the polygon ``ring`` (b, 2), clear of it and of ``fixed``, (k, 2).
+
+    The grid is the same seen in a mirror. Source: ours.
+    """
+    centre, reach = ring.mean(axis=0), np.ptp(ring, axis=0).max()
+    half = int(reach / spacing) + 1
+    row, column = (at.ravel() for at in np.mgrid[-2 * half : 2 * half + 1, -half : half + 1])
+    places = centre + spacing * np.stack([column + 0.5 * (row % 2), np.sqrt(0.75) * row], axis=1)
+    low, high = ring.min(axis=0), ring.max(axis=0)
+    places = places[((places > low) & (places < high)).all(axis=1)]
+    step = np.roll(ring, -1, axis=0) - ring
+    dense = [ring + share * step for share in (0.0, 1 / 3, 2 / 3)]
+    away = np.asarray(cKDTree(np.concatenate([*dense, fixed])).query(places)[0])
+    places = places[away > _CLEAR * spacing]
+    return np.asarray(places[inside_polygon(ring, places)])
+
+
+def joined_by_triangles(points: Floats, border: Indices, lines: Indices) -> Faces | None:
+    """Join ``points`` (p, 2) by triangles within the polygon of the rows ``border``, counter-clockwise.
+
+    Its sides and the ``lines`` (l, 2) are edges. None where the polygon crosses itself or a line.
+    """
+    try:
+        faces = Delaunay(points).simplices.astype(np.int64)
+    except QhullError:
+        return None
+    a, b, c = (points[faces[:, k]] for k in range(3))
+    turn = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
+    faces = np.where((turn < 0.0)[:, None], faces[:, ::-1], faces)
+    outline = np.stack([border, np.roll(border, -1)], axis=1)
+    wanted = np.concatenate([outline, lines])
+    for start, end in wanted[~np.isin(_keys(wanted), _keys(half_edges(faces)))].tolist():
+        changed = _with_edge(points, faces, start, end)
+        if changed is None:
+            return None
+        faces = changed
+    faces = faces[inside_polygon(points[border], points[faces].mean(axis=1))]
+    sides = half_edges(faces)
+    ahead, back = (side[:, 0] << 31 | side[:, 1] for side in (sides, sides[:, ::-1]))
+    free = np.sort(ahead[~np.isin(ahead, back)])
+    whole = np.array_equal(free, np.sort(outline[:, 0] << 31 | outline[:, 1]))
+    return faces if whole and len(np.unique(ahead)) == len(ahead) else None
+
+
+def _keys(edges: Indices) -> Indices:
+    return np.asarray(edges.min(axis=1) << 31 | edges.max(axis=1))
+
+
+def _with_edge(points: Floats, faces: Faces, start: int, end: int) -> Faces | None:
+    """Replace the triangles that the line from ``start`` to ``end`` crosses, so that it is an edge."""
+    first, last = points[start], points[end]
+    sides = half_edges(faces)
+    a, b = points[sides[:, 0]], points[sides[:, 1]]
+    splits = _left_of(first, last, a) * _left_of(first, last, b) < 0.0
+    splits &= _left_of(a, b, first) * _left_of(a, b, last) < 0.0
+    splits &= ~np.isin(sides, [start, end]).any(axis=1)
+    crossed = splits.reshape(3, -1).any(axis=0)
+    loops = boundary_loops(faces[crossed])
+    if len(loops) != 1 or start not in loops[0] or end not in loops[0]:
+        return None
+    loop = np.roll(loops[0], -int(np.flatnonzero(loops[0] == start)[0]))
+    at = int(np.flatnonzero(loop == end)[0])
+    parts = [loop[: at + 1], np.append(loop[at:], start)]
+    cut = [part[clip_ears(points[part], np.arange(len(part)), np.inf)[0]] for part in parts]
+    return np.concatenate([faces[~crossed], *cut])
+
+
+def _left_of(start: Floats, end: Floats, place: Floats) -> Floats:
+    """Return twice the areas of triangles, positive where ``place`` is left of the way to ``end``."""
+    way, to = end - start, place - start
+    return np.asarray(way[..., 0] * to[..., 1] - way[..., 1] * to[..., 0])
+
+
+def cut_open(faces: Faces, edges: Indices) -> tuple[Faces, Indices]:
+    """Part ``faces`` along ``edges`` (e, 2); return them, and the former one of each point, (p,).
+
+    A corner stays joined to those that it reaches over other edges. Points keep their order.
+    """
+    sides = half_edges(faces)
+    corner = np.arange(len(sides))  # corner k of face f has the number k m + f, as its side has
+    after = (corner + len(faces)) % len(sides)
+    order = np.argsort(_keys(sides), kind="stable")
+    keys = _keys(sides)[order]
+    twin = np.flatnonzero((keys[1:] == keys[:-1]) & ~np.isin(keys[1:], _keys(edges)))
+    one, two = order[twin], order[twin + 1]
+    start = np.concatenate([corner[one], after[one]])
+    end = np.concatenate([after[two], corner[two]])
+    graph = sparse.coo_array((np.ones(len(start)), (start, end)), (len(sides), len(sides)))
+    label = sparse.csgraph.connected_components(graph, directed=False)[1]
+    label = np.unique(sides[:, 0] * len(sides) + label, return_inverse=True)[1]
+    source = np.empty(int(label.max()) + 1, dtype=np.int64)
+    source[label] = sides[:, 0]
+    return label.reshape(3, -1).T.astype(np.int64), source

@@ -1,0 +1,263 @@
+"""Polylines on a skin followed from triangle to triangle: which edges each crosses, and where."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from core.errors import PatternError
+from core.geometry.closest_point import barycentric, nearest_faces
+from core.geometry.mesh import Faces, Floats, Indices, Mesh, Points, half_edges, unit
+from core.messages import Message
+
+SNAP = 4.0
+"""An end within this distance of another curve is put on it [mm]. Source: ours."""
+
+MARGIN = 0.04
+"""Nearer than this to an edge or a corner, in parts of the triangle [1], no vertex is added. Source: ours."""
+
+_INSIDE = 1e-3
+"""Samples keep this distance from the edges of their triangle [1]: the search for a way then ends in it."""
+
+_MOST_STEPS = 2000
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceCurve:
+    """A curve on the skin, ``points`` (k, 3) [mm]; closed where the last point is the first.
+
+    A ``slit`` cuts a panel open and may end within it; any other curve separates panels. Nothing is sewn to
+    a curve that ``is_edge``. A corner of a panel is where curves meet: a bend within a curve is rounded by
+    up to one triangle of the skin.
+    """
+
+    name: str
+    points: Points
+    slit: bool = False
+    is_edge: bool = False
+
+    @property
+    def is_closed(self) -> bool:
+        """Return whether the curve ends where it begins."""
+        return len(self.points) > 2 and float(np.linalg.norm(self.points[0] - self.points[-1])) < 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """A curve as a sequence of s stations, and the triangle between each and the next, ``faces`` (s - 1,).
+
+    A station is a place on the edge from vertex ``low`` to ``high``, ``share`` of the way (s, 3 arrays); or,
+    where ``node`` (s,) is not -1, a place within a triangle that curves share by this number.
+    """
+
+    low: Indices
+    high: Indices
+    share: Floats
+    node: Indices
+    faces: Indices
+
+
+@dataclass(frozen=True, eq=False)
+class Traces:
+    """The traces of all curves, and the shared places: their triangles (q,), shares of its corners (q, 3)."""
+
+    curves: tuple[Trace, ...]
+    node_faces: Indices
+    node_shares: Floats
+
+
+def face_neighbours(faces: Faces) -> Indices:
+    """Return the triangle beyond each side 0-1, 1-2, 2-0 of ``faces`` (m, 3), -1 at a border, (m, 3).
+
+    Beyond a side of more than two triangles there is none.
+    """
+    sides = half_edges(faces)
+    low, high = sides.min(axis=1), sides.max(axis=1)
+    key = low * (high.max(initial=0) + 1) + high
+    order = np.argsort(key, kind="stable")
+    ordered = key[order]
+    same = ordered[1:] == ordered[:-1]
+    alone = np.append(True, ~same[:-1]) & np.append(~same[1:], True)
+    first = np.flatnonzero(same & alone)
+    beyond = np.full(len(key), -1, dtype=np.int64)
+    one, two = order[first], order[first + 1]
+    beyond[one], beyond[two] = two % len(faces), one % len(faces)
+    return beyond.reshape(3, -1).T
+
+
+def trace_curves(mesh: Mesh, curves: tuple[SurfaceCurve, ...], neighbours: Indices) -> Traces:
+    """Follow ``curves`` over ``mesh``, whose triangles have these ``neighbours`` (m, 3).
+
+    An end within ``SNAP`` of another curve is put on it. Between two points a curve is where the plane
+    through both that is square to the skin cuts it. Raises PatternError where the skin does not connect them.
+    """
+    joined, nodes = _join_ends(curves)
+    ends = np.cumsum([len(points) for points in joined])
+    node = np.concatenate(nodes)
+    face, place = nearest_faces(mesh, np.concatenate(joined))
+    shares = np.clip(barycentric(mesh.vertices[mesh.faces[face]], place), 0.0, None)
+    shares = np.maximum(shares, np.where(node >= 0, MARGIN, _INSIDE)[:, None])
+    shares /= shares.sum(axis=1, keepdims=True)
+    _, first = np.unique(node[node >= 0], return_index=True)
+    first, shared = np.flatnonzero(node >= 0)[first], np.flatnonzero(node >= 0)
+    face[shared], shares[shared] = face[first[node[shared]]], shares[first[node[shared]]]
+    place = np.einsum("ij,ijk->ik", shares, mesh.vertices[mesh.faces[face]])
+    crossings = _walk(mesh, neighbours, face, place, np.delete(np.arange(len(face)), ends - 1))
+    if len(crossings.lost):
+        lost = curves[int(np.searchsorted(ends, crossings.lost[0], side="right"))]
+        raise PatternError(
+            Message('The skin cannot be followed along the curve "{name}".', name=lost.name),
+            Message("Add a point to it, or keep it off holes and loose parts of the scan."),
+        )
+    return Traces(_stations(crossings, node, face, ends), face[first], shares[first])
+
+
+def _join_ends(curves: tuple[SurfaceCurve, ...]) -> tuple[list[Points], list[Indices]]:
+    """Put ends that lie near a curve on it; return all points, and the number of the node that each is.
+
+    Curves that come first are left where they are. -1 marks points that are no node.
+    """
+    points: list[Points] = []
+    nodes: list[Indices] = []
+    total = 0
+    for curve in curves:
+        own, marks = np.asarray(curve.points, dtype=np.float64), np.full(len(curve.points), -1)
+        if len(own) < 2:
+            raise PatternError(Message('The curve "{name}" needs two points.', name=curve.name))
+        if curve.is_closed:
+            marks[[0, -1]] = total
+            total += 1
+        else:
+            for end in (0, -1):
+                own, marks, total = _join_end(own, marks, end, points, nodes, total)
+        points.append(own)
+        nodes.append(marks)
+    return points, nodes
+
+
+def _join_end(
+    own: Points, marks: Indices, end: int, points: list[Points], nodes: list[Indices], total: int
+) -> tuple[Points, Indices, int]:
+    """Put one end of a curve on the nearest of the curves before it, or make it a node of its own."""
+    place, best = own[end], (SNAP, -1, 0, 0.0)
+    for curve, line in enumerate(points):
+        step = np.diff(line, axis=0)
+        share = np.einsum("ij,ij->i", place - line[:-1], step)
+        share = np.clip(share / np.maximum((step**2).sum(axis=1), 1e-300), 0.0, 1.0)
+        away = np.linalg.norm(place - line[:-1] - share[:, None] * step, axis=1)
+        at = int(away.argmin())
+        if away[at] < best[0]:
+            best = float(away[at]), curve, at, float(share[at])
+    away_from, curve, at, share_at = best
+    if curve < 0:
+        marks[end] = total
+        return own, marks, total + 1
+    line, mark = points[curve], nodes[curve]
+    target = line[at] + share_at * (line[at + 1] - line[at])
+    taken = np.flatnonzero(mark >= 0)
+    away = np.linalg.norm(line[taken] - target, axis=1)
+    if away.min(initial=np.inf) < SNAP:
+        target, number = line[taken[away.argmin()]], mark[taken[away.argmin()]]
+    else:
+        number, total = total, total + 1
+        points[curve] = np.insert(line, at + 1, target, axis=0)
+        nodes[curve] = np.insert(mark, at + 1, number)
+    keep = np.linalg.norm(own - target, axis=1) > 2.0 * max(away_from, 1e-3)
+    keep |= marks >= 0
+    keep[[0, -1]] = True
+    own = own.copy()
+    own[end], marks[end] = target, number
+    return own[keep], marks[keep], total
+
+
+@dataclass(frozen=True, eq=False)
+class _Crossings:
+    """Crossings of edges: the sample before, the number after it, the edge, the share, the triangle.
+
+    All (c,); ``lost`` are samples from which no way to the next was found.
+    """
+
+    sample: Indices
+    number: Indices
+    low: Indices
+    high: Indices
+    share: Floats
+    face: Indices
+    lost: Indices
+
+
+def _walk(mesh: Mesh, neighbours: Indices, face: Indices, place: Points, sample: Indices) -> _Crossings:
+    """Walk from each of the points ``sample`` (g,) to the next, all at once, a triangle a step."""
+    normal = mesh.face_normals[face[:-1]] + mesh.face_normals[face[1:]]
+    ahead = np.diff(place, axis=0)
+    across = unit(np.cross(normal, ahead))
+    sample = sample[face[sample] != face[sample + 1]]
+    here, entered = face[sample], np.full(len(sample), -1)
+    found, lost = [], []
+    for number in range(_MOST_STEPS):
+        if not len(sample):
+            break
+        corners = mesh.faces[here]
+        after = np.roll(corners, -1, axis=1)
+        low, high = np.minimum(corners, after), np.maximum(corners, after)
+        start, normals = place[sample][:, None], across[sample][:, None]
+        ends = mesh.vertices[low], mesh.vertices[high]
+        at_low, at_high = (np.einsum("ijk,ijk->ij", end - start, normals) for end in ends)
+        crossed = (at_low >= 0.0) != (at_high >= 0.0)
+        share = at_low / np.where(crossed, at_low - at_high, 1.0)
+        key = low * len(mesh.vertices) + high
+        way = ends[0] + share[..., None] * (ends[1] - ends[0]) - start
+        forward = np.einsum("ijk,ik->ij", way, ahead[sample])
+        value = np.where(crossed & (key != entered[:, None]), forward, -np.inf)
+        row, out = np.arange(len(sample)), value.argmax(axis=1)
+        beyond = np.where(np.isfinite(value[row, out]), neighbours[here, out], -1)
+        good = beyond >= 0
+        lost.append(sample[~good])
+        row, out, sample, here = row[good], out[good], sample[good], beyond[good]
+        steps = np.full(len(row), number)
+        found.append((sample, steps, low[row, out], high[row, out], share[row, out], here))
+        going = here != face[sample + 1]
+        sample, here, entered = sample[going], here[going], key[row, out][going]
+    none = np.empty(0, dtype=np.int64)
+    columns = zip(*found, strict=True) if found else [[none]] * 6
+    samples, numbers, lows, highs, shares, faces = (np.concatenate(column) for column in columns)
+    return _Crossings(samples, numbers, lows, highs, shares, faces, np.sort(np.concatenate([*lost, sample])))
+
+
+def _stations(crossings: _Crossings, node: Indices, face: Indices, ends: Indices) -> tuple[Trace, ...]:
+    """Put crossings and nodes of all curves in order; the samples of each end before those of ``ends``."""
+    nodes = np.flatnonzero(node >= 0)
+    sample = np.concatenate([nodes, crossings.sample])
+    order = np.lexsort([np.concatenate([np.full(len(nodes), -1), crossings.number]), sample])
+    blank = np.full(len(nodes), -1)
+    low, high, share, number, after = (
+        np.concatenate(pair)[order]
+        for pair in (
+            (blank, crossings.low),
+            (blank, crossings.high),
+            (np.zeros(len(nodes)), crossings.share),
+            (node[nodes], np.full(len(crossings.sample), -1)),
+            (face[nodes], crossings.face),
+        )
+    )
+    bounds = np.searchsorted(sample[order], np.append(0, ends))
+    rows = [slice(first, end) for first, end in pairwise(bounds.tolist())]
+    return tuple(
+        _without_returns(Trace(low[at], high[at], share[at], number[at], after[at][:-1])) for at in rows
+    )
+
+
+def _without_returns(trace: Trace) -> Trace:
+    """Leave out pairs of crossings that lead over an edge and straight back."""
+    while True:
+        low, high, node = trace.low, trace.high, trace.node
+        back = (low[1:] == low[:-1]) & (high[1:] == high[:-1]) & (node[1:] < 0) & (node[:-1] < 0)
+        first = np.flatnonzero(back)
+        if not len(first):
+            return trace
+        first = first[np.diff(first, prepend=-2) > 1]
+        gone = np.concatenate([first, first + 1])
+        low, high, node = (np.delete(each, gone) for each in (low, high, node))
+        trace = Trace(low, high, np.delete(trace.share, gone), node, np.delete(trace.faces, gone))
