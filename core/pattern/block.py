@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib import resources
 from types import MappingProxyType
@@ -28,7 +28,8 @@ class Seam:
     ``kind`` is one of WAY, RING and ROOT. A way goes through ``places`` (see ``places``); a ring lies at
     ``level`` from one share of the half round to another, ``span``, 0 being the front centre and 1 the back
     centre; a root goes from one clock position to another [degrees], ``below`` the bust point or above it.
-    A ``slit`` is cut into a panel and divides none: a dart.
+    A ``slit`` is cut into a panel and divides none: a dart. Panels beside an ``edge`` are not sewn together,
+    as where a band is hooked.
     """
 
     name: str
@@ -39,6 +40,7 @@ class Seam:
     span: tuple[float, float] = (0.0, 1.0)
     below: bool = False
     slit: bool = False
+    edge: bool = False
 
     def named(self) -> tuple[tuple[str, str], ...]:
         """Return name and side of each curve that it is: "" for one over the middle."""
@@ -118,12 +120,13 @@ def block_of(name: str, text: str) -> Block:
 
 def _seam(entry: Mapping[str, Any]) -> Seam:
     kind = next(kind for kind in (WAY, RING, ROOT) if kind in entry)
-    name, each, slit = str(entry["name"]), bool(entry.get("each", False)), bool(entry.get("slit", False))
+    each, slit, edge = (bool(entry.get(key, False)) for key in ("each", "slit", "edge"))
+    seam = Seam(str(entry["name"]), kind, each, slit=slit, edge=edge)
     if kind == WAY:
-        return Seam(name, WAY, each, places=tuple(str(place) for place in entry[WAY]), slit=slit)
+        return replace(seam, places=tuple(str(place) for place in entry[WAY]))
     if kind == RING:
-        return Seam(name, RING, each, level=str(entry[RING]), span=_pair(entry.get("span", (0.0, 1.0))))
-    return Seam(name, ROOT, each, span=_pair(entry[ROOT]), below=bool(entry.get("below", False)))
+        return replace(seam, level=str(entry[RING]), span=_pair(entry.get("span", (0.0, 1.0))))
+    return replace(seam, span=_pair(entry[ROOT]), below=bool(entry.get("below", False)))
 
 
 def _pair(values: Sequence[Any]) -> tuple[float, float]:
