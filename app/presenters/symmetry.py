@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -12,11 +12,18 @@ from app.presenters.lines import row_title
 from app.presenters.measurements import length_uncertainty, plus_minus
 from app.presenters.messages import render
 from app.presenters.target_shape import is_met, is_signed, stop_text, target_title
-from core.analysis.inverse_design.bust_quantities import FURTHER_OUT, HIGHER, LIFT, OUT
+from core.analysis.inverse_design.bust_quantities import FURTHER_OUT, HIGHER
 from core.analysis.inverse_design.profile_quantities import section_of
 from core.analysis.inverse_design.quantity import Goal
 from core.analysis.symmetry.compare import BeforeAfter, SideDifference, SymmetryRow, symmetry_rows
-from core.analysis.symmetry.split_sides import ENOUGH, moves_one_side, splittable_lines
+from core.analysis.symmetry.split_sides import (
+    BUST_PAIR,
+    ENOUGH,
+    SEAT_PAIR,
+    moves_one_side,
+    splittable_lines,
+    uneven_pairs,
+)
 from core.control_mesh.template import read_template
 from core.document.design import Design
 from core.landmarks.warnings import edit_warnings
@@ -49,7 +56,7 @@ def symmetry_view(
     offs = _offs(spread)
     text = _sentence(now, {}, tr("Bust points before: {position}.")) if doubt else _sentence(now, offs)
     return SymmetryView(
-        joined((*map(render, edit_warnings(stages.body)), text)),
+        joined((*map(render, edit_warnings(stages.body)), text, *(() if doubt else _seat_sentences(now)))),
         tuple(_view(rows[key], bool(doubt), offs.get(key)) for key in _titles() if key in rows),
         (*map(render, told.notes), *_rests_on()),
         hint,
@@ -95,6 +102,26 @@ def _sentence(now: SideDifference, offs: Mapping[str, float], words: str = "") -
             within &= off is not None and abs(value) <= off
     text = (words or tr("Bust points: {position}.")).format(position=listed(parts))
     return joined((text, tr("No significant difference in position."))) if within else text
+
+
+def _seat_sentences(now: SideDifference) -> Iterator[str]:
+    """Yield how the heights of the seat differ, if they do."""
+    if now.seat is None:
+        return
+    for value, left, right in (
+        (
+            now.seat.higher,
+            tr("Left buttock point {length} higher."),
+            tr("Right buttock point {length} higher."),
+        ),
+        (
+            now.seat.fold_higher,
+            tr("Left gluteal fold {length} higher."),
+            tr("Right gluteal fold {length} higher."),
+        ),
+    ):
+        if abs(value) >= ENOUGH:
+            yield (left if value > 0.0 else right).format(length=length(abs(value)))
 
 
 def _view(row: SymmetryRow, doubtful: bool, off: float | None) -> SymmetryRowView:
@@ -177,12 +204,14 @@ def _rests_on() -> tuple[str, ...]:
 
 def _hint(stages: Stages, now: SideDifference) -> tuple[str, bool]:
     """Return what is done before lengths are looked for, or why they are not; and whether they can be."""
-    if now.largest_difference < ENOUGH:
+    pairs, design = uneven_pairs(stages, now), stages.design
+    if not pairs:
         return "", False
-    if moves_one_side(stages):
+    linked = [each for each in pairs if not moves_one_side(stages.regions[each.region])]
+    template = read_template(design.template)
+    names = tuple(name for each in linked for name in splittable_lines(design, template, each))
+    if len(linked) < len(pairs) and not names:
         return "", True
-    design = stages.design
-    names = splittable_lines(design, read_template(design.template))
     if not names:
         return tr(
             "To balance the sides, activate a line on one side, or an unlocked line across both."
@@ -209,7 +238,7 @@ def not_balanced_reason(gained: float, lost: float) -> tuple[str, str]:
 def has_balance_targets(goals: Sequence[Goal]) -> bool:
     """Return whether the targets are equal sides, and no profile."""
     names = [goal.name for goal in goals]
-    return bool({HIGHER, FURTHER_OUT} & set(names)) and not any(map(section_of, names))
+    return not {*BUST_PAIR.even, *SEAT_PAIR.even}.isdisjoint(names) and not any(map(section_of, names))
 
 
 def balance_result_texts(
@@ -222,14 +251,17 @@ def balance_result_texts(
     met = is_met(reply, goals)
     come = {**then, **reply.reached}
     wanted = {goal.name: goal.value for goal in goals}
-    wanted |= {name: now[name] for name in (LIFT, OUT) if name in now and name not in wanted}
+    kept = (*BUST_PAIR.kept, *SEAT_PAIR.kept)
+    wanted |= {name: now[name] for name in kept if name in now and name not in wanted}
     nearer = {name: abs(come[name] - mm) - abs(now[name] - mm) for name, mm in wanted.items() if name in now}
     line = tr("{quantity}: {before} → {after}")
     lines = [_way(name, now[name], come[name], line) for name, by in nearer.items() if by < -_SEEN]
     beside = tr("{quantity} {before} → {after}")
     price = listed(_way(name, now[name], come[name], beside) for name, by in nearer.items() if by > _SEEN)
     costs = tr("Trade-off: {values}").format(values=price) if price else ""
-    why = "\n".join(filter(None, ("" if met else stop_text(reply), _by_turns(reply.design))))
+    of_bust = not wanted.keys().isdisjoint(BUST_PAIR.even)
+    by_turns = _by_turns(reply.design) if of_bust else ""
+    why = "\n".join(filter(None, ("" if met else stop_text(reply), by_turns)))
     return "\n".join((_outcome(reply, met), *lines)), costs, why
 
 
@@ -255,6 +287,8 @@ def _way(name: str, before: float, after: float, text: str) -> str:
     titles = {
         HIGHER: (tr("Left higher"), tr("Right higher")),
         FURTHER_OUT: (tr("Left further forward"), tr("Right further forward")),
+        "left buttock higher": (tr("Left buttock point higher"), tr("Right buttock point higher")),
+        "left fold higher": (tr("Left gluteal fold higher"), tr("Right gluteal fold higher")),
     }
     if name not in titles:
         signed = is_signed(name)

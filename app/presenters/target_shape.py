@@ -46,6 +46,8 @@ def target_title(name: str) -> str:
         "buttock lift": tr("Buttock point lift"),
         "buttock out": tr("Buttock point, backward"),
         "fold lift": tr("Gluteal fold lift"),
+        "left buttock higher": tr("Left buttock higher than right"),
+        "left fold higher": tr("Left gluteal fold higher than right"),
         HIGHER: tr("Left higher than right"),
         FURTHER_OUT: tr("Left further forward than right"),
     }

@@ -11,12 +11,15 @@ from typing import Any
 
 import numpy as np
 
-from app.research.ground_truth import APEXES, Truth
-from core.errors import UserError
+from app.research.ground_truth import APEXES, LEVELLED, Truth
+from core.errors import LandmarkError, UserError
 from core.geometry.mesh import Floats, Points
 from core.landmarks.as_dict import detection
-from core.landmarks.types import SIDES
-from core.scan.body import body_of
+from core.landmarks.detect import find_landmarks
+from core.landmarks.lower_trunk.detect import find_lower_landmarks
+from core.landmarks.lower_trunk.types import LowerLandmarks
+from core.landmarks.types import SIDES, Landmarks
+from core.scan.body import Body, body_of
 from core.scan.readers.registry import scan_bytes
 
 UPRIGHT = 20.0
@@ -35,7 +38,7 @@ class Mark:
 
     ``off`` is the distance of a single point, of a bust point that from the segment between nipple and apex
     if both are known, and for fold and lowest point that in height: along the crease their place follows that
-    of the bust point.
+    of the bust point. Landmarks of the lower trunk are judged by their heights too.
     """
 
     name: str
@@ -99,7 +102,7 @@ def judged(folder: Path, truths: Sequence[Truth]) -> Iterator[Case]:
         start = time.process_time()
         try:
             body = body_of(truth.file, scan_bytes(folder / truth.file))
-            found = detection(body)
+            found = detection(body, *_landmarks(body, truth))
         except UserError as problem:
             yield Case(truth, str(problem), seconds=time.process_time() - start, to_mm=truth.to_mm)
         except Exception as problem:  # whatever goes wrong in one file, the others are judged
@@ -109,6 +112,17 @@ def judged(folder: Path, truths: Sequence[Truth]) -> Iterator[Case]:
             yield Case(truth, why, crashed=True, seconds=time.process_time() - start, to_mm=truth.to_mm)
         else:
             yield compared(truth, found, time.process_time() - start)
+
+
+def _landmarks(body: Body, truth: Truth) -> tuple[Landmarks, LowerLandmarks | None]:
+    """Return the landmarks of a body, those of the lower trunk if one of them is known and they are found."""
+    bust = find_landmarks(body)
+    if not truth.points.keys() & set(LEVELLED):
+        return bust, None
+    try:
+        return bust, find_lower_landmarks(body, bust)
+    except LandmarkError:
+        return bust, None
 
 
 def compared(truth: Truth, found: Mapping[str, Any], seconds: float = 0.0) -> Case:
@@ -178,8 +192,9 @@ def _point_errors(points: Mapping[str, Points], known: Mapping[str, Points]) -> 
     for name, at in points.items():
         if name not in known:
             continue
-        errors[name] = float(np.linalg.norm(at - known[name]))
-        if name.startswith(("fold", "lowest")):
+        if name not in LEVELLED:
+            errors[name] = float(np.linalg.norm(at - known[name]))
+        if name.startswith(("fold", "lowest")) or name in LEVELLED:
             errors[f"{name} height"] = float(at[2] - known[name][2])
         apex = known.get(name.replace("bust_point", "bust_apex"))
         if name.startswith("bust_point") and apex is not None:

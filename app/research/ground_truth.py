@@ -33,8 +33,17 @@ OTHER_NAMES = {
     **{f"breast_lowest_{side}": f"lowest_{side}" for side in SIDES},
     "front_mid_bust": "front_centre",
     "front_mid_underbust": "front_centre_underbust",
+    "waist_natural_front": "waist",
+    "hip_front": "hip",
+    "belly_front": "belly",
 }
 """Names of landmarks in other sets of bodies, and ours."""
+
+LEVELLED = (
+    *("crotch", "waist", "belly", "hip"),
+    *(f"{pair}_{side}" for pair in ("buttock", "gluteal_fold") for side in SIDES),
+)
+"""The landmarks of the lower trunk that are judged, by their heights alone."""
 
 GIRTHS = ("bust", "underbust", "underbust_stable")
 """The girths that are judged."""
@@ -170,7 +179,7 @@ def _truth(name: str, entry: Table, degraded: bool) -> tuple[Truth, set[str]]:
     points, strange = {}, set()
     for key, point in told.items():
         ours = OTHER_NAMES.get(key, key)
-        if ours not in (*NAMES, *APEXES):
+        if ours not in (*NAMES, *LEVELLED, *APEXES):
             strange.add(key)
         elif point is not None:
             points[ours] = matrix[:3, :3] @ _numbers(f"{where}: {key}", point, 3) + matrix[:3, 3]

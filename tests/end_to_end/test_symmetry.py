@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import reduce
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
+from whole_trunk import TRUNK
 from window_tools import Script, run_main, settled, undrawn
 
 import app.gui.features.symmetry.controller as desk_module
@@ -17,6 +19,7 @@ from app.gui.features.uncertainty.controller import UncertaintyController
 from app.gui.main_window import MainWindow
 from core.analysis.symmetry.compare import BeforeAfter, compare_sides
 from core.control_mesh.template import read_template
+from core.document.lower_trunk import LowerTrunk
 from core.document.split_lines import split
 
 pytestmark = pytest.mark.usefixtures("empty_house")
@@ -275,3 +278,33 @@ def test_an_even_body_has_nothing_to_be_made_even_and_a_line_is_split_all_the_sa
         yield from splits(window)
 
     run_main([str(mannequin)], script)
+
+
+def test_an_uneven_seat_is_levelled() -> None:
+    def script(window: MainWindow) -> Script:
+        undrawn(window)
+        yield settled(window)
+        lengths = {"waist": 0.98, "sling-left": 0.94, "sling-right": 0.98}
+        lengths |= {f"{name}-{side}": 0.98 for name in ("buttock-lift", "leg-opening") for side in SIDES}
+        bare = replace(window.session.design, lower=LowerTrunk())
+        worn = reduce(lambda each, line: each.with_line(*line), lengths.items(), bare)
+        window.session.edit(lambda _: worn, "Worn")
+        yield settled(window)
+        window.navigation.show_step("result")
+        yield lambda: is_fresh(window)
+        card, target = window.symmetry_controller.card, window.target_shape_controller
+        assert "Left gluteal fold " in card.says.text()
+        assert card.hint.text() == ""
+        card.make.click()
+        yield lambda: target.is_tried_on and not target.work.at_work
+        assert {goal.name for goal in target.goals()[:2]} == {"left buttock higher", "left fold higher"}
+        assert "Left gluteal fold higher: " in target.card.answer.text()
+        target.apply()
+        yield settled(window)
+        window.navigation.show_step("result")
+        yield lambda: is_fresh(window)
+        assert "gluteal fold" not in card.says.text()
+        assert not card.make.isEnabled()
+        window.session.undo_stack.setClean()
+
+    run_main([TRUNK], script)

@@ -16,10 +16,9 @@ from app.presenters.assessment import assessment_lines
 from app.presenters.symmetry import balance_result_texts, not_balanced_reason, split_titles, symmetry_view
 from app.presenters.target_shape import change_text, reasons
 from core import __version__
-from core.analysis.inverse_design.bust_quantities import FURTHER_OUT, HIGHER
-from core.analysis.symmetry.balance import EVEN, BalanceResult, balance_sides
+from core.analysis.symmetry.balance import BalanceResult, balance_sides
 from core.analysis.symmetry.compare import BeforeAfter, SideDifference, compare_sides, symmetry_rows
-from core.analysis.symmetry.split_sides import ENOUGH, split_sides
+from core.analysis.symmetry.split_sides import split_sides, uneven_pairs
 from core.control_mesh.template import read_template
 from core.document.design import Design
 from core.errors import UserError
@@ -68,7 +67,7 @@ class Symmetry:
     def balanced(self) -> bool:
         """Return whether left and right are equal enough."""
         after = self.compared.after if self.made is None else self.made.after
-        return after.largest_difference < ENOUGH
+        return not uneven_pairs(self.stages, after)
 
     @property
     def design(self) -> Design:
@@ -138,14 +137,10 @@ def _balance(found: Symmetry, made: BalanceResult) -> Iterator[str]:
         return
     if made.split:
         yield f"Left and right unlinked: {', '.join(split_titles(before, made.split))}."
-        before = split_sides(before, read_template(before.template))
+        before = split_sides(before, read_template(before.template), made.split)
     yield from change_text(before, made.result)
     values = [
-        {
-            HIGHER: each.higher,
-            FURTHER_OUT: each.further_out,
-            **{name: both[at] for name, both in made.kept.items()},
-        }
+        {**made.differences(each), **{name: both[at] for name, both in made.kept.items()}}
         for at, each in enumerate((made.before, made.after))
     ]
     yield from filter(None, balance_result_texts(made.result, made.goals, *values))
@@ -155,10 +150,10 @@ def _balance(found: Symmetry, made: BalanceResult) -> Iterator[str]:
 
 
 def _because(made: BalanceResult) -> list[str]:
-    """Return why no better balance was found: lift and protrusion are kept if nothing else hinders."""
+    """Return why no better balance was found: what both sides do is kept if nothing else hinders."""
     reply = made.result
     hindered = reply.at_limit or reply.strained or reply.at_pressure_limit
-    if hindered or len(made.goals) == len(EVEN):
+    if hindered or made.kept.keys().isdisjoint(goal.name for goal in made.goals):
         return reasons(reply)
     return ["a further gain would reduce lift or protrusion"]
 
@@ -183,7 +178,9 @@ def symmetry_data(found: Symmetry) -> dict[str, Any]:
             "rows": _after(made.after),
             "even": made.is_balanced,
             "worth": made.is_worthwhile,
-            "lines": {line.name: 100.0 * line.ratio for line in made.result.design.lines},
+            "lines": {
+                line.name: 100.0 * line.ratio for each in made.result.design.regions for line in each.lines
+            },
             "parted": list(made.split),
             "goals": {goal.name: goal.value for goal in made.goals},
             "remain_mm": {"height": made.after.higher, "out": made.after.further_out},

@@ -22,6 +22,7 @@ _MARKS = {
     "fold lift": ("gluteal_fold", _UP),
 }
 _BELLY = "belly out"
+_HIGHER = {"left buttock higher": "buttock", "left fold higher": "gluteal_fold"}
 
 
 class _Girth:
@@ -47,6 +48,15 @@ def _read_mark(stages: Stages, name: str) -> Read:
     mark, axis = _MARKS[what]
     weights = SIDES[name.removeprefix(what)][:, None] * axis
     return _followed(_lower(stages), (f"{mark}_left", f"{mark}_right"), weights)
+
+
+def _read_balance(stages: Stages, name: str) -> Read:
+    lower = _lower(stages)
+    names = tuple(f"{_HIGHER[name]}_{side}" for side in ("left", "right"))
+    few, marks = followed_marks(lower, names), np.stack([lower.landmarks.position(each) for each in names])
+    away = marks - few.rest
+    weights = np.stack([_UP, -_UP])
+    return Weighted(lambda points: few.places(points) + away, few.gradient, weights)
 
 
 def _read_belly(stages: Stages, _: str) -> Read:
@@ -77,6 +87,9 @@ LOWER_GIRTHS = QuantityFamily(tuple(_LEVELS), _read_girth, tolerance=5.0, region
 
 SEAT = QuantityFamily(tuple(f"{what}{side}" for what in _MARKS for side in SIDES), _read_mark, region="lower")
 """How far buttock points rise and come out backwards, and folds rise, the mean of both or one [mm]."""
+
+SEAT_EVEN = QuantityFamily(tuple(_HIGHER), _read_balance, region="lower")
+"""How much higher the left buttock point and the left gluteal fold are, as they are now [mm]."""
 
 BELLY = QuantityFamily((_BELLY,), _read_belly, region="lower")
 """How far the belly comes out [mm]; less than nothing is flatter."""

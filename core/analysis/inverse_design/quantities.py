@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from core.analysis.inverse_design.bust_quantities import APEX, BUST, EVEN, GIRTHS
-from core.analysis.inverse_design.lower_quantities import BELLY, LOWER_GIRTHS, SEAT
+from core.analysis.inverse_design.lower_quantities import BELLY, LOWER_GIRTHS, SEAT, SEAT_EVEN
 from core.analysis.inverse_design.profile_quantities import OUTLINE, profile_reader, section_of
 from core.analysis.inverse_design.quantity import QuantityFamily, Read, Reading, ReadMany
 from core.errors import UserError
@@ -15,7 +15,10 @@ from core.geometry.mesh import Floats, Points
 from core.messages import Message
 from core.pipeline.build import Stages
 
-FAMILIES: tuple[QuantityFamily, ...] = (BUST, APEX, GIRTHS, EVEN, OUTLINE, LOWER_GIRTHS, SEAT, BELLY)
+FAMILIES: tuple[QuantityFamily, ...] = (
+    *(BUST, APEX, GIRTHS, EVEN, OUTLINE),
+    *(LOWER_GIRTHS, SEAT, SEAT_EVEN, BELLY),
+)
 """All families of figures."""
 
 NAMES = tuple(name for family in FAMILIES for name in family.names)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, replace
-from math import hypot
 
 from core.deformation.tffd import deform
 from core.geometry.mesh import Points
@@ -50,11 +49,6 @@ class SideDifference:
     def largest_difference(self) -> float:
         """Return the larger one of what the bust points differ by in height and to the front [mm]."""
         return max(abs(self.higher), abs(self.further_out))
-
-    @property
-    def distance(self) -> float:
-        """How far one bust point is from the other, mirrored, in height and to the front together [mm]."""
-        return hypot(self.higher, self.further_out)
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from shapes import SAMPLES
+from whole_trunk import TRUNK
 
 from app.cli.main import BAD_INPUT, main
 from app.cli.output import DONE, NOT_CONVERGED
@@ -86,3 +87,22 @@ def test_invalid_options_are_refused(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert main(["symmetry", *still, "--balance"]) == BAD_INPUT
     assert "one side independently" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
+
+
+def test_a_seat_is_balanced_and_saved(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "level.busk"
+    slings = ("--line", "sling-left=94%", "--line", "sling-right=98%", "--line", "buttock-lift=98%")
+    worn = (TRUNK, *STANDING, *slings, "--line", "leg-opening=98%", "--line", "waist=98%")
+    assert main(["symmetry", *worn, "--balance", "--json", "--out", str(out)]) == DONE
+    figures = json.loads(capsys.readouterr().out)
+    made = figures["made"]
+    assert made["even"]
+    assert figures["rows"]["seat_fold_higher"]["after"] > 1.0
+    assert abs(made["rows"]["seat_fold_higher"]) < 0.5
+    assert set(made["goals"]) >= {"left buttock higher", "left fold higher", "waist girth"}
+    lower = open_project(out).design.lower
+    assert {line.name: 100.0 * line.ratio for line in lower.lines} == pytest.approx(made["lines"], abs=1e-6)
+    assert main(["symmetry", *worn, "--balance"]) == DONE
+    told = capsys.readouterr().out
+    assert "Left gluteal fold higher: " in told
+    assert "volume of each breast" not in told, "nothing is asked of the bust"

@@ -21,6 +21,8 @@ from app.research.commands.accuracy import run_accuracy
 from app.research.ground_truth import FORM, TruthError, read_truths
 from core.geometry.mesh import Mesh
 from core.landmarks.as_dict import detection
+from core.landmarks.detect import find_landmarks
+from core.landmarks.lower_trunk.detect import find_lower_landmarks
 from core.scan.body import read_scan
 
 ROOT = Path(__file__).parents[3]
@@ -291,3 +293,25 @@ def test_scans_are_turned_never_mirrored() -> None:
     assert stable_offset({z: 700.0 + (0.5 if z <= 0 else 3.0) * z for z in range(-40, 16, 5)}) == 0
     triangle = np.eye(3), np.array([[0, 1, 2]])
     assert ply_bytes(triangle).endswith(b"\x03" + np.arange(3, dtype="<i4").tobytes())
+
+
+def test_landmarks_of_the_lower_trunk_are_judged_by_their_heights(tmp_path: Path) -> None:
+    shutil.copy(ROOT / "resources/samples/trunk.ply", tmp_path / "trunk.ply")
+    body = read_scan(tmp_path / "trunk.ply")
+    found = find_lower_landmarks(body, find_landmarks(body))
+    told = {"crotch": 1.5, "waist_natural_front": -4.0, "gluteal_fold_left": 9.0}
+    ours = {"waist_natural_front": "waist"}
+    to_file = np.linalg.inv(body.pose.file_to_mm)
+    points = {}
+    for name, off in told.items():
+        place = np.append(found.points[ours.get(name, name)].position - [0.0, 0.0, off], 1.0)
+        points[name] = (to_file @ place)[:3].tolist()
+    write(tmp_path, {"bodies": {"trunk": {"file": "trunk.ply", "landmarks_file": points}}})
+    (truth,), strange = read_truths(tmp_path)
+    assert strange == []
+    (case,) = judged(tmp_path, [truth])
+    heights = {name: error for name, error in case.errors.items() if name.endswith(" height")}
+    assert heights == pytest.approx(
+        {"crotch height": 1.5, "waist height": -4.0, "gluteal_fold_left height": 9.0}
+    )
+    assert {mark.name: mark.off for mark in case.marks}["waist"] == pytest.approx(4.0)

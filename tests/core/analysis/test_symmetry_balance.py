@@ -5,12 +5,21 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from whole_trunk import wearing
 
 from app.presenters.samples import sample_design
 from core.analysis.inverse_design.quantities import reading
-from core.analysis.symmetry.balance import EVEN, balance_goals, balance_sides
+from core.analysis.inverse_design.quantity import Goal
+from core.analysis.symmetry.balance import balance_goals, balance_sides
 from core.analysis.symmetry.compare import NO_BREAST, compare_sides
-from core.analysis.symmetry.split_sides import ENOUGH, moves_one_side, split_sides, splittable_lines
+from core.analysis.symmetry.split_sides import (
+    BUST_PAIR,
+    ENOUGH,
+    SEAT_PAIR,
+    moves_one_side,
+    split_sides,
+    splittable_lines,
+)
 from core.control_mesh.template import read_template
 from core.document.line_notation import ready_made_lines
 from core.document.lines import LineSettings
@@ -21,6 +30,7 @@ from core.pipeline.build import Stages, build
 from core.pipeline.solve import solve
 
 TEMPLATE = read_template("168")
+EVEN = (Goal("left higher", 0.0), Goal("left further out", 0.0))
 
 
 @pytest.fixture(scope="module")
@@ -148,3 +158,55 @@ def test_a_breast_that_does_not_show_is_not_made_even(uneven: Stages) -> None:
     with pytest.raises(UserError) as refusal:
         balance_sides(replace(uneven, landmarks=one))
     assert refusal.value.message == NO_BREAST
+
+
+SEAT = {"waist": 0.98, "sling-left": 0.94, "sling-right": 0.98} | {
+    f"{name}-{side}": 0.98 for name in ("buttock-lift", "leg-opening") for side in ("left", "right")
+}
+STRAIGHT = {"mid-bust": 0.95}
+
+
+def test_a_seat_is_levelled_by_its_pairs_and_keeps_its_girths() -> None:
+    stages = wearing(SEAT)
+    made = balance_sides(stages)
+    assert made.pairs == (SEAT_PAIR,)
+    assert made.split == (), "slings are set apart already"
+    assert made.is_balanced
+    solution = solve(build(made.result.design, stages))
+    told = compare_sides(solution.stages, *solution.region_points)
+    assert told.after.seat == made.after.seat
+    assert abs(made.before.seat.fold_higher) > 1.0 > 10.0 * abs(told.after.seat.fold_higher)
+    assert abs(told.after.seat.higher) < 0.1
+    for name in ("waist", "belly", "hip"):
+        before, after = made.kept[f"{name} girth"]
+        assert after == pytest.approx(before, abs=0.5)
+    for name in ("buttock lift", "fold lift"):
+        before, after = made.kept[name]
+        assert after == pytest.approx(before, abs=0.1)
+
+
+def test_pairs_of_the_seat_are_unlinked_and_closed_bands_are_not() -> None:
+    stages = wearing({"waist": 0.97, "sling-left": 0.96, "sling-right": 0.96})
+    assert not moves_one_side(stages.lower), "the back centre is on neither side"
+    assert splittable_lines(stages.design, TEMPLATE) == ("sling-left", "sling-right")
+    apart = split_sides(stages.design, TEMPLATE)
+    assert apart.linked_pair("sling-left") == ("sling-left",)
+    assert moves_one_side(build(apart, stages).lower)
+    only = split_sides(wearing(STRAIGHT | SEAT).design, TEMPLATE, ("buttock-lift-left",))
+    assert only.active_lines() == {"mid-bust"}, "what is not named stays whole"
+    with pytest.raises(UserError, match="one side independently"):
+        balance_sides(wearing({"waist": 0.95}))
+
+
+def test_of_both_regions_the_uneven_one_is_balanced() -> None:
+    stages = wearing(STRAIGHT | SEAT)
+    made = balance_sides(stages)
+    assert made.pairs == (SEAT_PAIR,), "bust points of an even body are left alone"
+    assert made.is_balanced
+    assert made.result.design.lines == stages.design.lines
+    crooked = split(stages.design, TEMPLATE, "mid-bust").with_line("mid-bust left", 0.92)
+    crooked = crooked.with_line("mid-bust right", 0.98)
+    both = balance_sides(build(crooked, stages))
+    assert both.pairs == (BUST_PAIR, SEAT_PAIR)
+    assert set(both.differences(both.after)) == {goal.name for goal in both.goals if goal.value == 0.0}
+    assert both.is_balanced

@@ -148,7 +148,9 @@ class SymmetryController(QObject):
         template = read_template(design.template)
         titles = listed(split_titles(design, made.split))
         text = tr("Left and right unlinked: {lines}").format(lines=titles)
-        self.targets_proposed.emit(made.goals, lambda before: split_sides(before, template), text, limit)
+        self.targets_proposed.emit(
+            made.goals, lambda before: split_sides(before, template, made.split), text, limit
+        )
 
 
 def _balance(stages: Stages, progress: Progress) -> BalanceResult:

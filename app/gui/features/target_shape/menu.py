@@ -13,6 +13,7 @@ from app.gui.widgets.menu import Menu, pull_down
 from app.i18n.catalog import tr
 from app.presenters.target_shape import profile_title, target_title
 from core.analysis.inverse_design.bust_quantities import EVEN, GIRTH
+from core.analysis.inverse_design.lower_quantities import SEAT_EVEN
 
 if TYPE_CHECKING:
     from app.gui.context import AppContext
@@ -47,7 +48,8 @@ class TargetMenu(QObject):
         sided = (*(name for name in _BOTH if name != GIRTH), *(_SIDED_BELOW if below else ()))
         for side, title in (("left", tr("Left side only")), ("right", tr("Right side only"))):
             self._offer(self.menu.add_submenu(title), tuple(f"{name} {side}" for name in sided))
-        self._offer(self.menu.add_submenu(tr("Left relative to right")), EVEN.names)
+        even = (*EVEN.names, *(SEAT_EVEN.names if below else ()))
+        self._offer(self.menu.add_submenu(tr("Left relative to right")), even)
         self.menu.addSeparator()
         for side in ("left", "right"):
             if f"profile {side}" not in self._controller.drawn:
