@@ -87,11 +87,8 @@ class ClothState:
         (x, y, xy), (sx, sy, sxy) = self.stress.T, self.stretch.T
         return np.asarray((y - x) * sxy + xy * (sx - sy))
 
-    def curvature(self, stiffness: Floats, exact: bool = True) -> Floats:
-        """Return the second derivative of the density by D as (xx, xy, yx, yy), (m, 4, 4).
-
-        Without what stresses add, ``exact`` false, it is never negative.
-        """
+    def curvature(self, stiffness: Floats) -> Floats:
+        """Return the second derivative of the density by D as (xx, xy, yx, yy), (m, 4, 4)."""
         trace = np.maximum(self._trace, 1e-9)
         (sx, sy, sxy), (x, y, xy) = self.stretch.T, self.stress.T
         turn = np.array([0.0, -1.0, 1.0, 0.0]) / trace[:, None]
@@ -100,11 +97,8 @@ class ClothState:
         rows[:, 1] = [0.0, 0.0, 0.0, 1.0] + sxy[:, None] * turn
         rows[:, 2] = [0.0, 0.5, 0.5, 0.0] + 0.5 * (sx - sy)[:, None] * turn
         work = stiffness * np.array([1.0, 1.0, 2.0])[:, None]
-        result = rows.transpose(0, 2, 1) @ work @ rows
-        if exact:
-            pull = np.stack([-xy, x, -y, xy], axis=1)
-            pull += (2.0 * self._couple / trace)[:, None] * [1.0, 0.0, 0.0, 1.0]
-            pull += (x - y)[:, None] * rows[:, 2] + xy[:, None] * (rows[:, 1] - rows[:, 0])
-            bend = turn[:, :, None] * pull[:, None]
-            result -= 0.5 * (bend + bend.transpose(0, 2, 1))
-        return np.asarray(result)
+        pull = np.stack([-xy, x, -y, xy], axis=1)
+        pull += (2.0 * self._couple / trace)[:, None] * [1.0, 0.0, 0.0, 1.0]
+        pull += (x - y)[:, None] * rows[:, 2] + xy[:, None] * (rows[:, 1] - rows[:, 0])
+        bend = turn[:, :, None] * pull[:, None]
+        return np.asarray(rows.transpose(0, 2, 1) @ work @ rows - 0.5 * (bend + bend.transpose(0, 2, 1)))

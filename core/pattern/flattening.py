@@ -14,18 +14,18 @@ from core.geometry.mesh import Faces, Floats, Indices, Points
 from core.mechanics.banded_matrix import Solve
 from core.pattern.cloth_energy import ClothLike, ClothState, stiffness_matrix
 from core.pattern.panel import Panel
-from core.pattern.plane_maps import TriangleSlopes, jacobians, triangle_slopes
+from core.pattern.plane_maps import PlaneBand, TriangleSlopes, jacobians, triangle_slopes
 
 TOLERANCE = 1e-3
-"""The step after which a piece is at rest [mm]: the next would be of about its square."""
+"""The step after which a piece is at rest [mm]: with an old matrix the next is less than a fifth of it."""
+
+_NEARLY = 0.02
+"""The same with a new matrix [mm]: the next step is of about its square."""
+
+_GAIN = 0.2
+"""A matrix serves again while each step is less than this part of the one before [1]."""
 
 _MOST_TURNS = 40
-
-_FLOOR = 1e-8
-"""Part of the diagonal that is added to it [1]: the matrix alone does not hold a piece in its place."""
-
-AXES = 3
-"""Conditions that hold a piece: its mean place in both directions, and its grain line."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,6 +135,48 @@ def flatten_all(
 
 
 @dataclass(frozen=True, eq=False)
+class HeldSolver:
+    """Solves a panel's matrix while its mean place and its grain line are held.
+
+    The matrix alone lets the piece move and turn, and of a cloth that is not alike in all directions it has
+    a negative direction: it is solved with three coordinates pinned, which is then taken back exactly.
+    ``rows`` (6, 2 p) are the conditions and the pins; each miss of them is taken back by ``found`` (2 p, 6).
+    """
+
+    solve: Solve
+    rows: Floats
+    found: Floats
+
+    @classmethod
+    def of(cls, band: PlaneBand, lower: Floats, grain: Floats) -> HeldSolver:
+        """Prepare the matrix with this ``lower`` band; ``grain`` (p,) is to point up."""
+        top, bottom = int(grain.argmax()), int(grain.argmin())
+        pins = [2 * top, 2 * top + 1, 2 * bottom]
+        pin = float(np.abs(lower[band.diagonal]).mean())
+        lower[band.diagonal[pins]] += pin
+        rows = np.zeros((6, 2 * len(grain)))
+        rows[0, ::2] = rows[1, 1::2] = 1.0 / len(grain)
+        rows[2, ::2] = grain / np.abs(grain).sum()
+        rows[[3, 4, 5], pins] = 1.0
+        solve = band.factor(lower)
+        found = solve(rows.T) * np.repeat([1.0, -pin], 3)
+        inverse = np.linalg.inv(rows @ found + np.diag(np.repeat([0.0, 1.0], 3)))
+        return cls(solve, rows, found @ inverse)
+
+    def __call__(self, right: Floats, off: Floats | None = None) -> Floats:
+        """Return what the matrix makes ``right`` (p, 2) or (2 p, k) of, with the conditions of ``off``.
+
+        Without ``off`` (p, 2) they are 0. The result has the shape of ``right``.
+        """
+        columns = right.reshape(self.rows.shape[1], -1)
+        solution = self.solve(columns)
+        miss = self.rows @ solution
+        if off is not None:
+            miss[:3] -= self.rows[:3] @ off.reshape(-1, 1)
+        return np.asarray((solution - self.found @ miss).reshape(right.shape))
+
+
+@dataclass(frozen=True, eq=False)
 class FlatProblem:
     """The work of several panels at once; points and triangles of all are one array each, N and M long.
 
@@ -189,53 +231,40 @@ class FlatProblem:
             [np.bincount(self.faces.ravel(), pull[..., axis].ravel(), count) for axis in (0, 1)], axis=1
         )
 
-    def blocks(self, state: ClothState, turned: Floats, exact: bool) -> Floats:
+    def blocks(self, state: ClothState, turned: Floats) -> Floats:
         """Return the second derivatives of the work of each triangle, (M, 6, 6)."""
-        curvature = (state.curvature(self.stiffness, exact) * self.surface.areas[:, None, None]).reshape(
-            -1, 2, 2, 2, 2
-        )
-        across = np.swapaxes(turned, 1, 2)
-        parts = np.empty((len(self.faces), 3, 2, 3, 2))
-        for i in (0, 1):
-            for j in (0, 1):
-                parts[:, :, i, :, j] = turned @ curvature[:, i, :, j] @ across
-        return parts.reshape(-1, 6, 6)
+        curvature = state.curvature(self.stiffness) * self.surface.areas[:, None, None]
+        parts = np.zeros((len(self.faces), 3, 2, 2, 2))
+        parts[:, :, 0, 0] = parts[:, :, 1, 1] = turned
+        by_place = parts.reshape(-1, 6, 4)
+        return np.asarray(by_place @ curvature @ by_place.transpose(0, 2, 1))
 
-    def holds(self, panel: int) -> Floats:
-        """Return the conditions that hold a panel, as rows over its coordinates, (AXES, 2 p)."""
-        grain = self.panels[panel].grain
-        rows = np.zeros((AXES, len(grain), 2))
-        rows[0, :, 0] = rows[1, :, 1] = 1.0 / len(grain)
-        rows[2, :, 0] = grain / np.abs(grain).sum()
-        return rows.reshape(AXES, -1)
+    def solvers(self, blocks: Floats) -> list[HeldSolver]:
+        """Return a solver of each panel's matrix, made of ``blocks`` (M, 6, 6)."""
+        return [
+            HeldSolver.of(panel.band, panel.band.lower(blocks[rows]), panel.grain)
+            for panel, rows in zip(self.panels, self.triangles, strict=True)
+        ]
 
     def minimum(self, flat: Floats) -> Floats:
         """Return the places of the least work near ``flat`` (N, 2) [mm], by Newton steps."""
-        holds = [self.holds(panel) for panel in range(len(self.panels))]
-        state = self.state(flat)
+        state, solvers, before = self.state(flat), None, np.inf
         work = self.work(state)
         for _ in range(_MOST_TURNS):
             turned = self.turned_slopes(state)
-            slope, blocks = self.slope(state, turned), self.blocks(state, turned, True)
-            step = np.empty_like(flat)
-            for panel, (rows, faces) in enumerate(zip(self.points, self.triangles, strict=True)):
-                solve = self.factor(panel, blocks[faces])
-                right = np.concatenate([slope[rows].reshape(1, -1), holds[panel]])
-                found = solve(right.T)
-                off = holds[panel] @ flat[rows].ravel()
-                force = np.linalg.solve(holds[panel] @ found[:, 1:], off - holds[panel] @ found[:, 0])
-                step[rows] = -(found[:, 0] + found[:, 1:] @ force).reshape(-1, 2)
+            new = solvers is None
+            if solvers is None:
+                solvers = self.solvers(self.blocks(state, turned))
+            slope = self.slope(state, turned)
+            step = -np.concatenate(
+                [solver(slope[rows], flat[rows]) for solver, rows in zip(solvers, self.points, strict=True)]
+            )
             flat, state, work = self._accepted(flat, step, work)
-            if np.abs(step).max() < TOLERANCE:
+            size = float(np.abs(step).max())
+            if size < (_NEARLY if new else TOLERANCE):
                 break
+            solvers, before = (solvers, size) if size < _GAIN * before else (None, size)
         return flat
-
-    def factor(self, panel: int, blocks: Floats) -> Solve:
-        """Return a solver of a panel's matrix made of ``blocks`` (m, 6, 6)."""
-        band = self.panels[panel].band
-        lower = band.lower(blocks)
-        lower[band.diagonal] *= 1.0 + _FLOOR
-        return band.factor(lower)
 
     def _accepted(self, flat: Floats, step: Floats, work: Floats) -> tuple[Floats, ClothState, Floats]:
         """Take ``step``, halved for each panel until its ``work`` does not rise."""
