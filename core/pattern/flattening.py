@@ -239,11 +239,17 @@ class FlatProblem:
         by_place = parts.reshape(-1, 6, 4)
         return np.asarray(by_place @ curvature @ by_place.transpose(0, 2, 1))
 
-    def solvers(self, blocks: Floats) -> list[HeldSolver]:
-        """Return a solver of each panel's matrix, made of ``blocks`` (M, 6, 6)."""
+    def lowers(self, blocks: Floats) -> list[Floats]:
+        """Return the lower band of each panel's matrix, made of ``blocks`` (M, 6, 6)."""
         return [
-            HeldSolver.of(panel.band, panel.band.lower(blocks[rows]), panel.grain)
-            for panel, rows in zip(self.panels, self.triangles, strict=True)
+            panel.band.lower(blocks[rows]) for panel, rows in zip(self.panels, self.triangles, strict=True)
+        ]
+
+    def solvers(self, lowers: list[Floats]) -> list[HeldSolver]:
+        """Return a solver of each panel's matrix with the lower band of it, which is overwritten."""
+        return [
+            HeldSolver.of(panel.band, lower, panel.grain)
+            for panel, lower in zip(self.panels, lowers, strict=True)
         ]
 
     def minimum(self, flat: Floats) -> Floats:
@@ -254,7 +260,7 @@ class FlatProblem:
             turned = self.turned_slopes(state)
             new = solvers is None
             if solvers is None:
-                solvers = self.solvers(self.blocks(state, turned))
+                solvers = self.solvers(self.lowers(self.blocks(state, turned)))
             slope = self.slope(state, turned)
             step = -np.concatenate(
                 [solver(slope[rows], flat[rows]) for solver, rows in zip(solvers, self.points, strict=True)]
