@@ -196,8 +196,8 @@ class _Stretches:
             count += int(seam.stretch[-1]) + 1
         panel_of = np.concatenate(panels)
         shrink = 1.0 / (1.0 + np.array([cloth.ease for cloth in problem.cloths]))
-        points_and_rows = (np.concatenate(each) for each in (starts, ends, rows))
-        return cls(*points_and_rows, np.concatenate(signs), shrink[panel_of], panel_of, count)
+        start, end, row = (np.concatenate(each) for each in (starts, ends, rows))
+        return cls(start, end, row, np.concatenate(signs), shrink[panel_of], panel_of, count)
 
     def steps(self, flat: Floats) -> tuple[Floats, Floats]:
         """Return direction (e, 2) and length (e,) [mm] of each step at ``flat`` (N, 2), after ease."""
@@ -298,7 +298,7 @@ class _System:
         return cls(problem.points, solvers, columns, parts, yields, cho_factor(matrix))
 
     def step(self, pull: Floats, flat: Floats, off: Floats) -> tuple[Floats, Floats]:
-        """Return the step (N, 2) and the change of tensions (c,) against a ``pull`` (N, 2) and ``off`` (c,)."""
+        """Return the step (N, 2) and the change of tensions (c,) that end ``pull`` and ``off`` (c,)."""
         free = [
             solver(pull[rows], flat[rows]) for solver, rows in zip(self.solvers, self.points, strict=True)
         ]
