@@ -18,7 +18,7 @@ from core.pattern.panel_border import BorderPiece, SeamNet, SkinRegion, seam_net
 from core.pattern.plane_maps import PlaneBand, conformal_map, rigid_map, triangle_slopes
 from core.pattern.surface_cut import CutSkin
 
-SPACINGS = (4.0, 9.0)
+SPACINGS = (5.0, 9.0)
 """The distance of points of small and of large panels [mm]. Source: measured, see ``spacing_of``."""
 
 UP = (0.0, 0.0, 1.0)

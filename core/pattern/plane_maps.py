@@ -86,13 +86,16 @@ class PlaneBand:
         return np.asarray(self.band.place * (self.band.reach + 1))
 
     def factor(self, lower: Floats) -> Solve:
-        """Return a solver of the matrix with this lower band; its diagonal is raised until it has one."""
-        mean = float(np.abs(lower[self.diagonal]).mean())
-        raised = 0.0
+        """Return a solver of the matrix with this ``lower`` band, its diagonal raised until there is one.
+
+        Raises FloatingPointError if it has no figures.
+        """
+        raised = 1e-7 * float(np.abs(lower[self.diagonal]).mean())
+        if not np.isfinite(raised):
+            raise FloatingPointError("a matrix that is not finite")
         while (solve := self.band.cholesky(lower)) is None:
-            lower = lower.copy()
-            raised = max(10.0 * raised, 1e-9)
-            lower[self.diagonal] += raised * mean
+            lower[self.diagonal] += raised
+            raised *= 30.0
         return solve
 
 

@@ -1,0 +1,313 @@
+"""Panels laid flat together, so that sides that are sewn to each other are equally long all along."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from types import MappingProxyType
+
+import numpy as np
+from scipy import sparse
+from scipy.linalg import cho_factor, cho_solve
+
+from core.blas_threads import one_blas_thread
+from core.geometry.mesh import Floats, Indices, Points
+from core.pattern.cloth_energy import ClothLike
+from core.pattern.flattening import FlatPanel, FlatProblem, HeldSolver
+from core.pattern.panel import Panel
+
+NO_RATIOS: Mapping[tuple[str, int], float] = MappingProxyType({})
+
+STRETCH = 15.0
+"""Sides agree over each stretch of about this length [mm]; shorter ones only bend the outline."""
+
+TOLERANCE = 1e-3
+"""The step after which the pieces are at rest [mm]: with old matrices the next is a fifth of it."""
+
+_NEARLY = 0.02
+"""The same with new matrices [mm]: the next step is of about its square."""
+
+_GAIN = 0.2
+"""Matrices serve again while each step is less than this part of the one before [1]."""
+
+_LONGEST_STEP = 8.0
+"""No point goes further in one turn [mm]."""
+
+_MOST_TURNS = 25
+
+
+@dataclass(frozen=True, eq=False)
+class Seam:
+    """Two sides that are sewn together: panels by number, and their points in the same order, (k,).
+
+    The first is to be ``ratio`` times as long as the second: over 1 it is eased in or gathered. They agree
+    over each ``stretch``, whose number each step from point to point has, (k - 1,).
+    """
+
+    name: str
+    panels: tuple[int, int]
+    sides: tuple[int, int]
+    points: tuple[Indices, Indices]
+    stretch: Indices
+    ratio: float = 1.0
+
+
+def seams_of(
+    panels: Sequence[Panel], ratios: Mapping[tuple[str, int], float] = NO_RATIOS
+) -> tuple[Seam, ...]:
+    """Return each seam between ``panels`` once.
+
+    ``ratios`` are those of the length of a side, by name of panel and its number there, to its partner's.
+    """
+    number = {panel.name: at for at, panel in enumerate(panels)}
+    seams = []
+    for at, panel in enumerate(panels):
+        for side, own in enumerate(panel.sides):
+            if own.partner is None or own.partner[0] not in number:
+                continue
+            other, other_side = number[own.partner[0]], own.partner[1]
+            if (at, side) < (other, other_side):
+                back = ratios.get((panels[other].name, other_side), 1.0)
+                ratio = ratios.get((panel.name, side), 1.0 / back)
+                points = own.points, panels[other].sides[other_side].points[::-1]
+                stretch = _stretches(panel.start[own.points])
+                seams.append(Seam(own.name, (at, other), (side, other_side), points, stretch, ratio))
+    return tuple(seams)
+
+
+def _stretches(curve: Floats) -> Indices:
+    """Divide the steps along ``curve`` (k, 2) into stretches of equal numbers."""
+    steps = np.linalg.norm(np.diff(curve, axis=0), axis=1)
+    count = int(np.clip(round(float(steps.sum()) / STRETCH), 1, len(steps)))
+    return np.arange(len(steps)) * count // len(steps)
+
+
+@dataclass(frozen=True)
+class SeamFit:
+    """A seam: the lengths of both sides, flattened alone and together, after ease [mm].
+
+    ``off`` is the largest difference that is left over one of its stretches [mm], the ratio taken into
+    account. ``tension`` is the largest force along the first side by which it is made to agree, in units of
+    stiffness times mm: positive where it is shortened.
+    """
+
+    seam: Seam
+    alone: tuple[float, float]
+    together: tuple[float, float]
+    off: float
+    tension: float
+
+    @property
+    def misfit(self) -> float:
+        """Return by how much the first side is longer when flattened alone, in parts of the second [1]."""
+        return self.alone[0] / (self.seam.ratio * self.alone[1]) - 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class Matched:
+    """Pieces ``flats`` that can be sewn along ``seams``; ``tensions`` (c,) of all stretches hold them so."""
+
+    flats: tuple[FlatPanel, ...]
+    seams: tuple[Seam, ...]
+    tensions: Floats
+    _problem: FlatProblem
+    _misfits: Floats
+
+    @cached_property
+    def alone(self) -> tuple[FlatPanel, ...]:
+        """Return the pieces each flattened by itself: what seams cost is the difference of strain."""
+        with one_blas_thread():
+            return self._problem.results(self._problem.minimum(self._problem.joined(_worn(self.flats))))
+
+    @cached_property
+    def fits(self) -> tuple[SeamFit, ...]:
+        """Return how each seam fits."""
+        ends = np.cumsum([seam.stretch[-1] + 1 for seam in self.seams])[:-1]
+        parts = zip(self.seams, np.split(self._misfits, ends), np.split(self.tensions, ends), strict=True)
+        fits = []
+        for seam, off, tension in parts:
+            (a, b), (side, other) = seam.panels, seam.sides
+            alone, together = (
+                (pieces[a].side_length(side), pieces[b].side_length(other))
+                for pieces in (self.alone, self.flats)
+            )
+            largest = float(tension[np.abs(tension).argmax()])
+            fits.append(SeamFit(seam, alone, together, float(np.abs(off).max()), largest))
+        return tuple(fits)
+
+
+def _worn(pieces: Sequence[FlatPanel]) -> list[Floats]:
+    return [piece.worn for piece in pieces]
+
+
+def match(
+    panels: Sequence[Panel],
+    places: Sequence[Points],
+    cloths: Sequence[ClothLike],
+    seams: Sequence[Seam],
+    former: Matched | None = None,
+) -> Matched:
+    """Lay ``panels`` whose points are at ``places``, each (p, 3) [mm], flat so that their ``seams`` fit.
+
+    The sum of their work is the least at which each stretch of each seam is as long on both sides, after
+    ease. A ``former`` answer for the same panels and seams saves turns.
+    """
+    problem = FlatProblem.of(panels, places, cloths)
+    stretches = _Stretches.of(problem, seams)
+    with one_blas_thread():
+        if former is None:
+            flat, tensions = problem.minimum(problem.joined(None)), np.zeros(stretches.count)
+        else:
+            flat, tensions = problem.joined(_worn(former.flats)), former.tensions
+        flat, tensions = _together(problem, stretches, flat, tensions)
+    off = stretches.misfits(flat)
+    return Matched(problem.results(flat), tuple(seams), tensions, problem, off)
+
+
+@dataclass(frozen=True, eq=False)
+class _Stretches:
+    """The steps of all sides that are sewn: from point ``start`` to ``end`` of all panels, (e,).
+
+    Step k belongs to stretch ``row`` and counts ``sign`` times; ``shrink`` (e, 2) is what ease makes of worn
+    places. ``panel`` (e,) is each one's; ``count`` the number of stretches.
+    """
+
+    start: Indices
+    end: Indices
+    row: Indices
+    sign: Floats
+    shrink: Floats
+    panel: Indices
+    count: int
+
+    @classmethod
+    def of(cls, problem: FlatProblem, seams: Sequence[Seam]) -> _Stretches:
+        """List the steps of ``seams``."""
+        starts, ends, rows, signs, panels, count = [], [], [], [], [], 0
+        for seam in seams:
+            for panel, points, sign in zip(seam.panels, seam.points, (1.0, -seam.ratio), strict=True):
+                whole = points + problem.points[panel].start
+                starts.append(whole[:-1])
+                ends.append(whole[1:])
+                rows.append(count + seam.stretch)
+                signs.append(np.full(len(seam.stretch), sign))
+                panels.append(np.full(len(seam.stretch), panel))
+            count += int(seam.stretch[-1]) + 1
+        panel_of = np.concatenate(panels)
+        shrink = 1.0 / (1.0 + np.array([cloth.ease for cloth in problem.cloths]))
+        start, end, row = (np.concatenate(each) for each in (starts, ends, rows))
+        return cls(start, end, row, np.concatenate(signs), shrink[panel_of], panel_of, count)
+
+    def steps(self, flat: Floats) -> tuple[Floats, Floats]:
+        """Return direction (e, 2) and length (e,) [mm] of each step at ``flat`` (N, 2), after ease."""
+        way = (flat[self.end] - flat[self.start]) * self.shrink
+        length = np.maximum(np.linalg.norm(way, axis=1), 1e-9)
+        return way / length[:, None], length
+
+    def misfits(self, flat: Floats) -> Floats:
+        """Return by how much the first side of each stretch is too long, (count,) [mm]."""
+        lengths = self.sign * self.steps(flat)[1]
+        return np.bincount(self.row, lengths, self.count).astype(np.float64, copy=False)
+
+    def slopes(self, flat: Floats) -> sparse.csc_array:
+        """Return the slopes of ``misfits`` by the places, (2 N, count)."""
+        pull = self.steps(flat)[0] * self.shrink * self.sign[:, None]
+        at = np.stack([2 * self.end, 2 * self.end + 1, 2 * self.start, 2 * self.start + 1])
+        value = np.concatenate([pull.T, -pull.T])
+        entries = (value.ravel(), (at.ravel(), np.tile(self.row, 4)))
+        return sparse.csc_array(sparse.coo_array(entries, (2 * len(flat), self.count)))
+
+    def add_bending(self, problem: FlatProblem, lowers: list[Floats], flat: Floats, tensions: Floats) -> None:
+        """Add to the matrices of all panels what ``tensions`` (count,) in turning steps add."""
+        way, length = self.steps(flat)
+        bend = np.eye(2) - way[:, :, None] * way[:, None]
+        bend *= self.shrink[:, :, None] * self.shrink[:, None]
+        bend *= (tensions[self.row] * self.sign / length)[:, None, None]
+        blocks = np.concatenate(
+            [np.concatenate([bend, -bend], axis=2), np.concatenate([-bend, bend], axis=2)], axis=1
+        )
+        for number, (rows, lower) in enumerate(zip(problem.points, lowers, strict=True)):
+            own = self.panel == number
+            ends = 2 * np.stack([self.start[own], self.end[own]], axis=1) - 2 * rows.start
+            band = problem.panels[number].band.band
+            place = band.place[(ends[:, :, None] + np.arange(2)).reshape(-1, 4)]
+            row, column = np.broadcast_arrays(place[:, :, None], place[:, None, :])
+            below = row >= column
+            at = column[below] * (band.reach + 1) + row[below] - column[below]
+            np.add.at(lower, at, blocks[own][below])
+
+
+def _together(
+    problem: FlatProblem, stretches: _Stretches, flat: Floats, tensions: Floats
+) -> tuple[Floats, Floats]:
+    """Return places (N, 2) [mm] and tensions of the least work under equal lengths, by Newton steps."""
+    system, before = None, np.inf
+    for _ in range(_MOST_TURNS):
+        state = problem.state(flat)
+        turned = problem.turned_slopes(state)
+        slopes = stretches.slopes(flat)
+        new = system is None
+        if system is None:
+            lowers = problem.lowers(problem.blocks(state, turned))
+            stretches.add_bending(problem, lowers, flat, tensions)
+            system = _System.of(problem, lowers, slopes)
+        pull = problem.slope(state, turned) + (slopes @ tensions).reshape(-1, 2)
+        off = stretches.misfits(flat)
+        step, change = system.step(pull, flat, off)
+        size = float(np.abs(step).max())
+        flat = flat + min(1.0, _LONGEST_STEP / max(size, 1e-12)) * step
+        tensions = tensions + change
+        if size < (_NEARLY if new else TOLERANCE):
+            break
+        system, before = (system, size) if size < _GAIN * before else (None, size)
+    return flat, tensions
+
+
+@dataclass(frozen=True, eq=False)
+class _System:
+    """The matrices of all panels, held, and what their stretches make of them.
+
+    ``slopes`` are each panel's of the stretches ``columns`` that it has, ``yields`` how its places give way
+    to their tensions; ``factor`` (Cholesky) tells tensions from lengths.
+    """
+
+    points: tuple[slice, ...]
+    solvers: list[HeldSolver]
+    columns: list[Indices]
+    slopes: list[Floats]
+    yields: list[Floats]
+    factor: tuple[Floats, bool]
+
+    @classmethod
+    def of(cls, problem: FlatProblem, lowers: list[Floats], slopes: sparse.csc_array) -> _System:
+        """Factor the matrices with the lower bands ``lowers``; ``slopes`` (2 N, c)."""
+        solvers = problem.solvers(lowers)
+        matrix = np.zeros((slopes.shape[1],) * 2)
+        columns, parts, yields = [], [], []
+        rows = sparse.csr_array(slopes)
+        for points, solver in zip(problem.points, solvers, strict=True):
+            own = rows[2 * points.start : 2 * points.stop]
+            which = np.unique(own.indices).astype(np.int64)
+            part = own[:, which].toarray()
+            given = solver(part)
+            matrix[np.ix_(which, which)] += part.T @ given
+            columns.append(which)
+            parts.append(part)
+            yields.append(given)
+        return cls(problem.points, solvers, columns, parts, yields, cho_factor(matrix))
+
+    def step(self, pull: Floats, flat: Floats, off: Floats) -> tuple[Floats, Floats]:
+        """Return the step (N, 2) and the change of tensions (c,) that end ``pull`` and ``off`` (c,)."""
+        free = [
+            solver(pull[rows], flat[rows]) for solver, rows in zip(self.solvers, self.points, strict=True)
+        ]
+        wanted = off.copy()
+        for which, part, given in zip(self.columns, self.slopes, free, strict=True):
+            wanted[which] -= part.T @ given.ravel()
+        change = np.asarray(cho_solve(self.factor, wanted))
+        step = [
+            -given - (yields @ change[which]).reshape(-1, 2)
+            for given, yields, which in zip(free, self.yields, self.columns, strict=True)
+        ]
+        return np.concatenate(step), change
