@@ -55,6 +55,10 @@ class TissueError(LineError):
     """Solid tissue cannot be computed on the scan."""
 
 
+class PatternError(UserError):
+    """A block, a seam or a pattern piece cannot be made."""
+
+
 class ProjectError(UserError):
     """The project file cannot be read or written."""
 

@@ -20,6 +20,7 @@ LIBRARIES = {
     "core.document": NUMBERS | {"platformdirs"},
     "core.measurements": NUMBERS | {"platformdirs"},
     "core.garment": NUMBERS | {"platformdirs"},
+    "core.pattern": NUMBERS | {"shapely"},
     "core.export": NUMBERS | {"ezdxf", "trimesh"},
     "app.i18n": set(),
     "app.rendering": SCENE | {"PIL"},
