@@ -1,0 +1,174 @@
+"""Layout of pieces on a width, the test square in a free corner, and tiles of paper that cover them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+import shapely
+
+from core.geometry.mesh import Floats
+from core.pattern.allowance import CutPiece
+
+APART = 8.0
+"""What stays free between two pieces [mm]."""
+
+SQUARE = 50.0
+"""Side of the square that is measured after printing [mm]."""
+
+SQUARE_ROOM = (58.0, 72.0)
+"""Width and height of what stays free round the square and the words below it [mm]."""
+
+MARGIN, OVERLAP = 10.0, 10.0
+"""What stays empty round a sheet of paper, and how far neighbouring sheets are glued over each other [mm]."""
+
+PAPERS = {"a4": (210.0, 297.0), "a3": (297.0, 420.0), "letter": (215.9, 279.4)}
+"""Width and height of the sheets of paper [mm]."""
+
+_MOST_COLUMNS = 8
+_STEP = 4.0  # between places that are tried for the square [mm]
+_INSIDE = 4.0  # from the edge of its room to the square [mm]
+
+Box = tuple[float, float, float, float]
+"""Left, lower, right and upper end [mm]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """Pieces in their places, from (0, 0) at the top left ``width`` to the right and ``height`` down, where y
+    is negative, and the lower left corner of the test ``square``, (2,) [mm].
+    """
+
+    pieces: tuple[CutPiece, ...]
+    width: float
+    height: float
+    square: Floats
+
+
+@dataclass(frozen=True)
+class Tile:
+    """A sheet of paper; it shows the layout within a ``window``. Rows and columns are counted from 1."""
+
+    row: int
+    column: int
+    window: Box
+
+    @property
+    def name(self) -> str:
+        """Return what is printed on the sheet."""
+        return f"{self.row}-{self.column}"
+
+
+@dataclass(frozen=True, eq=False)
+class Tiling:
+    """A layout on ``tiles`` of paper of a ``size``, without those that would show nothing.
+
+    ``rows`` and ``columns`` count all places of tiles.
+    """
+
+    layout: Layout
+    size: tuple[float, float]
+    tiles: tuple[Tile, ...]
+    rows: int
+    columns: int
+
+
+def lay_out(pieces: Sequence[CutPiece], width: float) -> Layout:
+    """Return pieces on shelves of a width [mm], the highest first; a piece that is wider widens the layout.
+
+    The test square stands where it is free, from the top left on; if nowhere, below the pieces.
+    """
+    placed, used, height = _shelves(pieces, width)
+    return _with_square(placed, used, height, [(0.0, -height - SQUARE_ROOM[1], used, 0.0)])
+
+
+def lay_out_on_tiles(pieces: Sequence[CutPiece], paper: tuple[float, float]) -> Tiling:
+    """Return pieces on as few sheets of ``paper`` as any width needs, upright or turned [mm].
+
+    The test square stands whole on one sheet, the first that has room for it.
+    """
+    sizes = (paper, paper[::-1])
+    tries = [_tiling(pieces, *each) for each in product(sizes, range(1, _MOST_COLUMNS + 1))]
+    return min(tries, key=lambda each: (len(each.tiles), each.rows * each.columns, each.columns))
+
+
+def whole_sheet(pieces: Sequence[CutPiece], width: float) -> Tiling:
+    """Return pieces on one sheet that is as large as their layout on a width, with ``MARGIN`` [mm]."""
+    layout = lay_out(pieces, width)
+    size = (layout.width + 2.0 * MARGIN, layout.height + 2.0 * MARGIN)
+    return Tiling(layout, size, (Tile(1, 1, (0.0, -layout.height, layout.width, 0.0)),), 1, 1)
+
+
+def cut_shape(piece: CutPiece) -> shapely.Polygon:
+    """Return the area inside the cut line."""
+    return shapely.Polygon(piece.cut)
+
+
+def _tiling(pieces: Sequence[CutPiece], size: tuple[float, float], columns: int) -> Tiling:
+    window = np.array(size) - 2.0 * MARGIN
+    step = window - OVERLAP
+    placed, used, height = _shelves(pieces, columns * step[0] + OVERLAP)
+    columns = _count(used, step[0])
+    tiles = [
+        Tile(row + 1, column + 1, (x, y - float(window[1]), x + float(window[0]), y))
+        for row in range(_count(height, step[1]) + 1)  # one more: it has room for the square
+        for column in range(columns)
+        for x, y in [(column * float(step[0]), -row * float(step[1]))]
+    ]
+    layout = _with_square(placed, used, height, [each.window for each in tiles])
+    kept = tuple(each for each in tiles if _shows(each, layout))
+    return Tiling(layout, size, kept, max(each.row for each in kept), columns)
+
+
+def _count(length: float, step: float) -> int:
+    """Return how many sheets are needed for a length [mm]."""
+    return max(1, math.ceil((length - OVERLAP) / step - 1e-9))
+
+
+def _shows(tile: Tile, layout: Layout) -> bool:
+    """Return whether a sheet shows anything that those to the left and above do not show already."""
+    left, low, right, top = tile.window
+    own = shapely.box(left + OVERLAP * (tile.column > 1), low, right, top - OVERLAP * (tile.row > 1))
+    square = shapely.box(*layout.square, *(layout.square + SQUARE))
+    return any(own.intersects(each) for each in (square, *map(cut_shape, layout.pieces)))
+
+
+def _shelves(pieces: Sequence[CutPiece], width: float) -> tuple[list[CutPiece], float, float]:
+    """Return pieces side by side on shelves from the top down, with the width and height that they take."""
+    lows, highs = ([at(each.cut, axis=0) for each in pieces] for at in (np.min, np.max))
+    sizes = [high - low for low, high in zip(lows, highs, strict=True)]
+    shelves: list[list[float]] = []  # of each its top, and how far right it is filled
+    placed: dict[int, CutPiece] = {}
+    below = 0.0
+    for k in sorted(range(len(pieces)), key=lambda k: (-round(float(sizes[k][1]), 1), k)):
+        shelf = next((each for each in shelves if each[1] + sizes[k][0] <= width), None)
+        if shelf is None:
+            shelf = [-below, 0.0]
+            shelves.append(shelf)
+            below += float(sizes[k][1]) + APART
+        placed[k] = pieces[k].shifted(np.array([shelf[1] - lows[k][0], shelf[0] - highs[k][1]]))
+        shelf[1] += float(sizes[k][0]) + APART
+    used = max((each[1] - APART for each in shelves), default=0.0)
+    return [placed[k] for k in range(len(pieces))], max(used, SQUARE_ROOM[0]), max(below - APART, 0.0)
+
+
+def _with_square(placed: Sequence[CutPiece], used: float, height: float, boxes: Sequence[Box]) -> Layout:
+    """Return the layout with its square in the first free place within one of the boxes."""
+    taken = shapely.union_all([cut_shape(each) for each in placed])
+    shapely.prepare(taken)
+    wide, high = SQUARE_ROOM
+    corners = np.array(
+        [
+            (x, y)
+            for left, low, right, top in boxes
+            for y in np.arange(top, low + high - 1e-9, -_STEP)
+            for x in np.arange(left, right - wide + 1e-9, _STEP)
+        ]
+    )
+    rooms = shapely.box(corners[:, 0], corners[:, 1] - high, corners[:, 0] + wide, corners[:, 1])
+    x, y = corners[int(np.argmin(shapely.intersects(taken, rooms)))]
+    square = np.array([x + _INSIDE, y - _INSIDE - SQUARE])
+    return Layout(tuple(placed), used, max(height, float(high - y)), square)
