@@ -28,6 +28,7 @@ STYLE = """
 .head { fill: #111111; stroke: none }
 .stretch { fill: none; stroke: #2e6da4; stroke-width: 0.3 }
 text { font-family: sans-serif; fill: #111111; text-anchor: middle }
+.name { font-weight: bold }
 .stretch-word { fill: #2e6da4 }
 """
 """Weights of lines [mm] and colours, by which laser cutters and other programs tell lines apart."""
@@ -81,8 +82,8 @@ def _piece(root: Xml.Element, name: str, cut: CutPiece, about: Sequence[str], sa
     _text(
         group, note.stretch.mean(axis=0) + np.array([0.0, 1.0]), say(STRETCH), STRETCH_LETTERS, "stretch-word"
     )
-    for line, base in zip(note.lines, note.bases, strict=True):
-        _text(group, base, line, note.size)
+    for number, (line, base) in enumerate(zip(note.lines, note.bases, strict=True)):
+        _text(group, base, line, note.size, "" if number else "name")
 
 
 def _square(root: Xml.Element, corner: Floats, say: Say) -> None:

@@ -27,6 +27,8 @@ NEARLY_STRAIGHT = float(np.radians(40.0))
 CLOSED = 0.5
 """Gaps of twice this width between the allowances of two sides are cut as one [mm]."""
 
+_GRID = 1e-6  # of unions [mm]: without one they lose parts of shapes that nearly touch
+_SLANTED = float(np.radians(70.0))  # beyond it the end of a wide allowance is no step but a corner
 _LEAST_MARK = 2.0  # of a notch where there is no allowance [mm]
 _DEPTH = 4.0  # from the cut line inward [mm]
 
@@ -71,10 +73,11 @@ def sew_shape(piece: Piece) -> shapely.Polygon:
 
 def _cut_shape(piece: Piece) -> shapely.Polygon:
     strips = [shapely.convex_hull(shapely.MultiPoint(each)) for each in _strips(piece)]
-    whole = shapely.union_all([sew_shape(piece), *strips])
+    parts = [sew_shape(piece), *(each for each in strips if shapely.get_dimensions(each) == 2)]
+    whole = shapely.union_all(parts, grid_size=_GRID)
     # Strips that only touch leave hair cracks, through which the cut line would come to the sew line.
     style = {"join_style": "mitre", "mitre_limit": 5.0}
-    closed = whole.buffer(CLOSED, **style).buffer(-CLOSED, **style).union(whole)
+    closed = shapely.union(whole.buffer(CLOSED, **style).buffer(-CLOSED, **style), whole, grid_size=_GRID)
     return shapely.Polygon(_largest(closed).exterior).simplify(0.001)
 
 
@@ -136,17 +139,22 @@ def _widths(piece: Piece, sides: list[Points2]) -> list[Floats]:
         along = arc_length(points)
         width = np.full(len(points), own[k])
         for other, way, distance in ((k - 1, (k - 1, k), along), (after, (k, after), along[-1] - along)):
-            if own[other] > own[k] and _turn(sides[way[0]], sides[way[1]]) < NEARLY_STRAIGHT:
+            if own[other] > own[k] and _makes_step(sides[way[0]], sides[way[1]], own[k] / own[other]):
                 share = np.clip(1.0 - distance / min(BLEND, along[-1]), 0.0, 1.0)
                 width = np.maximum(width, own[k] + share * (own[other] - own[k]))
         found.append(width)
     return found
 
 
-def _turn(before: Points2, after: Points2) -> float:
-    """Return by how much the outline turns from a side to the next [rad], either way."""
+def _makes_step(before: Points2, after: Points2, ratio: float) -> bool:
+    """Return whether allowances of a ``ratio`` below 1 would make a step between two sides.
+
+    They would where the outline turns little, and where it turns outward and the wider one ends far beyond
+    the line of the other.
+    """
     a, b = before[-1] - before[-2], after[1] - after[0]
-    return abs(float(np.arctan2(a[0] * b[1] - a[1] * b[0], a @ b)))
+    turn = float(np.arctan2(a[0] * b[1] - a[1] * b[0], a @ b))
+    return abs(turn) < NEARLY_STRAIGHT or (0.0 < turn < _SLANTED and ratio < np.cos(turn))
 
 
 def _without_repeats(side: Side) -> Points2:

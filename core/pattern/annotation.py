@@ -12,7 +12,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from core.geometry.mesh import Floats
-from core.messages import Message, SideName
+from core.messages import ClothName, Message, SideName
 from core.pattern.allowance import CutPiece, sew_shape
 from core.pattern.piece import BOTH, Piece
 
@@ -31,7 +31,8 @@ _LINE = 1.4  # from line to line, in sizes of letters [1]
 _FREE = 2.5  # between words and the sew line, and between arrows and words [mm]
 _STEP = 3.0  # between places that are tried [mm]
 _LONGEST = (90.0, 40.0)  # grain line and stretch [mm]
-_ENDS = 5.0  # from an arrow to the sew line [mm]
+_ENDS = 5.0  # from an arrow to the sew line and to words [mm]
+_SHORTEST = 12.0  # of an arrow, before it comes nearer to them or crosses the other one [mm]
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +46,11 @@ class Annotation:
     size: float
     grain: Floats
     stretch: Floats
+
+    @property
+    def stretch_word(self) -> Floats:
+        """Return where the word at the arrow of greatest stretch stands, in its middle, (2,) [mm]."""
+        return np.asarray(self.stretch.mean(axis=0) + np.array([0.0, 1.7]))
 
     @property
     def bases(self) -> Floats:
@@ -64,7 +70,8 @@ def piece_words(piece: Piece, say: Say = str, about: Sequence[str] = ()) -> tupl
         if piece.side == BOTH
         else Message("cut {count}", count=piece.count)
     )
-    return (title, piece.cloth, say(count), *(each for each in about if each))
+    cloth = Message("{cloth}", cloth=ClothName(piece.cloth))
+    return (title[:1].upper() + title[1:], say(cloth), say(count), *(each for each in about if each))
 
 
 def annotate(cut: CutPiece, lines: Sequence[str]) -> Annotation:
@@ -76,13 +83,15 @@ def annotate(cut: CutPiece, lines: Sequence[str]) -> Annotation:
     inner = [shapely.LineString(points).buffer(1.0) for _, points in piece.internal]
     free = shape.difference(shapely.union_all(inner)) if inner else shape
     written, size, centre = _place_words(free, tuple(lines))
-    half = 0.5 * np.array(_extent(written, size)) + _ENDS
-    rest = free.buffer(-_ENDS).difference(shapely.box(*(centre - half), *(centre + half)))
-    if rest.is_empty:
-        rest = free
-    grain = _arrow(rest, np.array(piece.grain), centre, _LONGEST[0])
-    without = rest.difference(shapely.LineString(grain).buffer(_ENDS))
-    stretch = _arrow(without if not without.is_empty else rest, np.array(piece.stretch), centre, _LONGEST[1])
+    half = 0.5 * np.array(_extent(written, size))
+    for ends, crossing in ((_ENDS, False), (_FREE, False), (_FREE, True)):
+        room = half + np.array([ends, _ENDS])  # the word at an arrow fits between it and a line of words
+        rest = free.buffer(-ends).difference(shapely.box(*(centre - room), *(centre + room)))
+        grain = _arrow(rest, np.array(piece.grain), centre, _LONGEST[0])
+        beside = rest if crossing else rest.difference(shapely.LineString(grain).buffer(ends))
+        stretch = _arrow(beside, np.array(piece.stretch), centre, _LONGEST[1])
+        if min(np.linalg.norm(each[1] - each[0]) for each in (grain, stretch)) >= _SHORTEST:
+            break
     return Annotation(written, centre, size, grain, stretch)
 
 
@@ -122,6 +131,8 @@ def _grid(free: BaseGeometry) -> Floats:
 
 def _arrow(free: BaseGeometry, way: Floats, near: Floats, longest: float) -> Floats:
     """Return the ends of a long straight line of a direction in a shape, not far from a place, (2, 2)."""
+    if free.is_empty:
+        return np.array([near, near])
     left, low, right, top = free.bounds
     reach = float(np.hypot(right - left, top - low))
     across = np.array([-way[1], way[0]])

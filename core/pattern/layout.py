@@ -16,6 +16,9 @@ from core.pattern.allowance import CutPiece
 APART = 8.0
 """What stays free between two pieces [mm]."""
 
+EDGE = 3.0
+"""What stays free between pieces and the edge of the layout [mm]."""
+
 SQUARE = 50.0
 """Side of the square that is measured after printing [mm]."""
 
@@ -91,7 +94,7 @@ def lay_out_on_tiles(pieces: Sequence[CutPiece], paper: tuple[float, float]) -> 
     The test square stands whole on one sheet, the first that has room for it.
     """
     sizes = (paper, paper[::-1])
-    tries = [_tiling(pieces, *each) for each in product(sizes, range(1, _MOST_COLUMNS + 1))]
+    tries = [_tiling(pieces, *each) for each in product(sizes, range(1, _MOST_COLUMNS + 1), (1, 0))]
     return min(tries, key=lambda each: (len(each.tiles), each.rows * each.columns, each.columns))
 
 
@@ -107,10 +110,10 @@ def cut_shape(piece: CutPiece) -> shapely.Polygon:
     return shapely.Polygon(piece.cut)
 
 
-def _tiling(pieces: Sequence[CutPiece], size: tuple[float, float], columns: int) -> Tiling:
+def _tiling(pieces: Sequence[CutPiece], size: tuple[float, float], columns: int, along: int) -> Tiling:
     window = np.array(size) - 2.0 * MARGIN
     step = window - OVERLAP
-    placed, used, height = _shelves(pieces, columns * step[0] + OVERLAP)
+    placed, used, height = _shelves(pieces, columns * step[0] + OVERLAP, along)
     columns = _count(used, step[0])
     tiles = [
         Tile(row + 1, column + 1, (x, y - float(window[1]), x + float(window[0]), y))
@@ -136,23 +139,29 @@ def _shows(tile: Tile, layout: Layout) -> bool:
     return any(own.intersects(each) for each in (square, *map(cut_shape, layout.pieces)))
 
 
-def _shelves(pieces: Sequence[CutPiece], width: float) -> tuple[list[CutPiece], float, float]:
-    """Return pieces side by side on shelves from the top down, with the width and height that they take."""
+def _shelves(pieces: Sequence[CutPiece], width: float, along: int = 1) -> tuple[list[CutPiece], float, float]:
+    """Return pieces side by side on shelves from the top down, with the width and height that they take.
+
+    The largest come first, by their height, or by their width if ``along`` is 0.
+    """
     lows, highs = ([at(each.cut, axis=0) for each in pieces] for at in (np.min, np.max))
     sizes = [high - low for low, high in zip(lows, highs, strict=True)]
-    shelves: list[list[float]] = []  # of each its top, and how far right it is filled
+    shelves: list[list[float]] = []  # of each its top, how far right it is filled, and its height
     placed: dict[int, CutPiece] = {}
-    below = 0.0
-    for k in sorted(range(len(pieces)), key=lambda k: (-round(float(sizes[k][1]), 1), k)):
-        shelf = next((each for each in shelves if each[1] + sizes[k][0] <= width), None)
+    below = EDGE
+    for k in sorted(range(len(pieces)), key=lambda k: (-round(float(sizes[k][along]), 1), k)):
+        wide, high = sizes[k]
+        fits = (each for each in shelves if each[1] + wide + EDGE <= width and high <= each[2])
+        shelf = next(fits, None)
         if shelf is None:
-            shelf = [-below, 0.0]
+            shelf = [-below, EDGE, float(high)]
             shelves.append(shelf)
-            below += float(sizes[k][1]) + APART
+            below += float(high) + APART
         placed[k] = pieces[k].shifted(np.array([shelf[1] - lows[k][0], shelf[0] - highs[k][1]]))
-        shelf[1] += float(sizes[k][0]) + APART
-    used = max((each[1] - APART for each in shelves), default=0.0)
-    return [placed[k] for k in range(len(pieces))], max(used, SQUARE_ROOM[0]), max(below - APART, 0.0)
+        shelf[1] += float(wide) + APART
+    used = max((each[1] - APART + EDGE for each in shelves), default=0.0)
+    height = below - APART + EDGE if shelves else 0.0
+    return [placed[k] for k in range(len(pieces))], max(used, SQUARE_ROOM[0]), height
 
 
 def _with_square(placed: Sequence[CutPiece], used: float, height: float, boxes: Sequence[Box]) -> Layout:
