@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 from PySide6.QtGui import QPainter
+from shapely.geometry.base import BaseGeometry
 
 from app.i18n.catalog import tr, using_language
 from app.presenters.messages import render
@@ -24,7 +25,7 @@ from core.pattern.annotation import (
     arrow_heads,
     piece_words,
 )
-from core.pattern.layout import MARGIN, OVERLAP, SQUARE, Tile, Tiling, cut_shape
+from core.pattern.layout import MARGIN, OVERLAP, SQUARE, SQUARE_WORDS, Tile, Tiling, cut_shape
 from core.pattern.piece import Points2
 
 CUT, SEW, FINE = 0.5, 0.25, 0.15
@@ -32,6 +33,7 @@ CUT, SEW, FINE = 0.5, 0.25, 0.15
 
 _HEAD, _FOOT = 24.0, 14.0  # of the overview [mm]
 _KEY = 14.0  # length of a sample of a line [mm]
+_SHEET = (7.0, 4.0)  # of that in the small picture [mm]
 _NAME = (36.0, 20.0)  # of the room for the name of a sheet [mm]
 
 
@@ -130,7 +132,7 @@ class _Drawing:
         corners = corner + SQUARE * np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
         self.outline(corners, SEW)
         middle = corners.mean(axis=0)
-        self.words(middle, tr("{size} mm").format(size=f"{SQUARE:g}"), 5.0)
+        self.words(middle, SQUARE_WORDS, 5.0)
         text = tr("Measure after printing. Otherwise print again at 100 %.")
         for count, line in enumerate(wrap(text, "small", SQUARE + 4.0)):
             below = corner + np.array([SQUARE / 2.0, -4.0 - 3.6 * count])
@@ -257,21 +259,33 @@ class _Overview:
         drawing = _Drawing(paper, np.array([x, y]) + scale * np.array([-left, top]), scale)
         for each in tiling.layout.pieces:
             drawing.outline(each.cut, SEW)
-        letters = 2.6
-        for each, note in zip(tiling.layout.pieces, self._sheets.notes, strict=True):
-            drawing.words(note.centre - np.array([0.0, 0.35 * letters / scale]), each.piece.name, letters)
         square = tiling.layout.square
         corners = square + SQUARE * np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
         drawing.outline(corners, FINE)
+        taken = self._piece_names(drawing)
         for tile in tiling.tiles:
             x0, y0, x1, y1 = tile.window
-            drawing.outline(
-                np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]), FINE, LIGHT.text_caption, dashed=True
-            )
-            corner = drawing.on_page(np.array([[x1, y1]]))[0]
-            paper.text(
-                corner[0] - 1.5, corner[1] + 4.0, tile.name, "small strong", align="right", ink=LIGHT.info
-            )
+            corners = np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
+            drawing.outline(corners, FINE, LIGHT.text_caption, dashed=True)
+            upper, lower = (drawing.on_page(corners[[k]])[0] for k in (3, 1))
+            rooms = [
+                shapely.box(left, top, left + _SHEET[0], top + _SHEET[1])
+                for left in (lower[0] - _SHEET[0] - 1.0, upper[0] + 1.0)
+                for top in (upper[1] + 1.0, lower[1] - _SHEET[1] - 1.0)
+            ]
+            room = next((each for each in rooms if not each.intersects(taken)), rooms[0])
+            paper.letters(room.centroid.x, room.bounds[3] - 1.0, tile.name, 2.65, LIGHT.info, strong=True)
+            taken = taken.union(room)
+
+    def _piece_names(self, drawing: _Drawing) -> BaseGeometry:
+        """Write the names of pieces into the small picture, and return what they take of the page."""
+        boxes = []
+        for each, note in zip(self._sheets.tiling.layout.pieces, self._sheets.notes, strict=True):
+            name, (x, y) = each.piece.name, drawing.on_page(note.centre[None])[0]
+            self._paper.letters(x, y + 1.0, name, 2.6)
+            half = 0.5 * text_width(name, "body")
+            boxes.append(shapely.box(x - half, y - 2.0, x + half, y + 2.0))
+        return shapely.union_all(boxes)
 
     def _words(self, x: float, y: float, wide: float) -> None:
         """Write how to put the sheets together, what the lines mean, and which pieces there are."""
@@ -279,8 +293,8 @@ class _Overview:
         square = next(each.name for each in tiling.tiles if _holds(each, tiling.layout.square))
         steps = (
             tr("Print all sheets at 100 %; do not let the printer fit them to the page."),
-            tr("Measure the square on sheet {sheet}: its sides must be {size} mm long.").format(
-                sheet=square, size=f"{SQUARE:g}"
+            tr("Measure the square on sheet {sheet}: its sides must be {length} long.").format(
+                sheet=square, length=SQUARE_WORDS
             ),
             tr(
                 "Sheets are named row-column. Cut each along its left and upper edge, lay it on the dashed "

@@ -13,10 +13,9 @@ from core.document.printable_name import printable
 from core.export.report_data import Heading
 from core.files.atomic_write import atomic_path
 from core.geometry.mesh import Floats
-from core.messages import Message
 from core.pattern.allowance import CutPiece
 from core.pattern.annotation import STRETCH, STRETCH_LETTERS, Say, annotate, arrow_heads, piece_words
-from core.pattern.layout import MARGIN, SQUARE, Layout
+from core.pattern.layout import MARGIN, SQUARE, SQUARE_WORDS, Layout
 from core.pattern.piece import Points2
 
 STYLE = """
@@ -48,7 +47,7 @@ def write_pattern_svg(path: Path, layout: Layout, heading: Heading, say: Say = s
     root = Xml.Element("svg", {"xmlns": "http://www.w3.org/2000/svg", "version": "1.1", **page})
     Xml.SubElement(root, "title").text = printable(heading.project)
     Xml.SubElement(root, "style").text = STYLE
-    _square(root, layout.square, say)
+    _square(root, layout.square)
     about = (heading.customer, heading.date)
     for name, each in zip(_ids([piece.piece.key for piece in layout.pieces]), layout.pieces, strict=True):
         _piece(root, name, each, about, say)
@@ -86,12 +85,11 @@ def _piece(root: Xml.Element, name: str, cut: CutPiece, about: Sequence[str], sa
         _text(group, base, line, note.size, "" if number else "name")
 
 
-def _square(root: Xml.Element, corner: Floats, say: Say) -> None:
+def _square(root: Xml.Element, corner: Floats) -> None:
     group = Xml.SubElement(root, "g", {"id": "test-square"})
     corners = corner + SQUARE * np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     _path(group, corners, "square", closed=True)
-    words = say(Message("{size} mm, 1:1", size=f"{SQUARE:g}"))
-    _text(group, corners.mean(axis=0), words, 4.0)
+    _text(group, corners.mean(axis=0), f"{SQUARE_WORDS}, 1:1", 4.0)
 
 
 def _path(

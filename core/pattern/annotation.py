@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import re
 import unicodedata
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from textwrap import wrap
 
 import numpy as np
 import shapely
@@ -26,7 +26,7 @@ STRETCH_LETTERS = 2.4
 """Size of its letters [mm]."""
 
 _LETTERS = (4.0, 3.4, 2.8, 2.3)  # sizes that are tried [mm]
-_NARROW = 14  # letters of a line in a narrow piece
+_NARROW = 8.0  # width of a line in a narrow piece, in sizes of letters [1]
 _LINE = 1.4  # from line to line, in sizes of letters [1]
 _FREE = 2.5  # between words and the sew line, and between arrows and words [mm]
 _STEP = 3.0  # between places that are tried [mm]
@@ -108,8 +108,7 @@ def _place_words(free: BaseGeometry, lines: tuple[str, ...]) -> tuple[tuple[str,
     """Return the lines that fit, the size of their letters and the middle of the room that they take."""
     places = _grid(free)
     depth = shapely.distance(shapely.points(places), free.boundary)
-    narrow = [part for each in lines for part in wrap(each, _NARROW)]
-    for written in (lines, tuple(narrow), lines[:3], tuple(narrow[: 1 + len(lines)]), lines[:1]):
+    for written in (lines, _broken(lines), _broken(lines[:3]), _broken(lines[:3:2]), lines[:1]):
         for size in _LETTERS:
             half = 0.5 * np.array(_extent(written, size)) + _FREE
             boxes = shapely.box(*(places - half).T, *(places + half).T)
@@ -117,6 +116,18 @@ def _place_words(free: BaseGeometry, lines: tuple[str, ...]) -> tuple[tuple[str,
             if fits.any():
                 return written, size, places[np.flatnonzero(fits)[np.argmax(depth[fits])]]
     return lines[:1], _LETTERS[-1], places[np.argmax(depth)]
+
+
+def _broken(lines: Sequence[str]) -> tuple[str, ...]:
+    """Return lines of at most ``_NARROW`` letters' width, broken at blanks, or between wide letters."""
+    found = []
+    for line in lines:
+        found.append("")
+        for part in re.findall(r"\s*(?:[!-\u2e7f]+|\S)", line):
+            if found[-1] and text_width(found[-1] + part) > _NARROW:
+                found.append("")
+            found[-1] += part if found[-1] else part.lstrip()
+    return tuple(found)
 
 
 def _grid(free: BaseGeometry) -> Floats:

@@ -22,6 +22,9 @@ EDGE = 3.0
 SQUARE = 50.0
 """Side of the square that is measured after printing [mm]."""
 
+SQUARE_WORDS = f"{SQUARE:g} mm"
+"""What is written in it: rulers have millimetres, whatever the unit in use."""
+
 SQUARE_ROOM = (58.0, 72.0)
 """Width and height of what stays free round the square and the words below it [mm]."""
 
@@ -180,4 +183,4 @@ def _with_square(placed: Sequence[CutPiece], used: float, height: float, boxes: 
     rooms = shapely.box(corners[:, 0], corners[:, 1] - high, corners[:, 0] + wide, corners[:, 1])
     x, y = corners[int(np.argmin(shapely.intersects(taken, rooms)))]
     square = np.array([x + _INSIDE, y - _INSIDE - SQUARE])
-    return Layout(tuple(placed), used, max(height, float(high - y)), square)
+    return Layout(tuple(placed), max(used, float(x + wide)), max(height, float(high - y)), square)

@@ -26,7 +26,7 @@ LIBRARIES = {
     "app.rendering": SCENE | {"PIL"},
     "app.presenters": {"numpy"},
     "app.research": SCENE | {"matplotlib", "PIL", "threadpoolctl", "trimesh"},
-    "app.report": QT | {"numpy"},
+    "app.report": QT | {"numpy", "shapely"},
     "app.gui.theme": QT | {"PySide6.QtSvg"},
     "app.gui.widgets": QT | {"numpy"},
     "app.gui.plots": QT | {"numpy", "PySide6.QtSvg"},
