@@ -9,6 +9,7 @@ from itertools import product
 
 import numpy as np
 import shapely
+from shapely.geometry.base import BaseGeometry
 
 from core.geometry.mesh import Floats
 from core.pattern.allowance import CutPiece
@@ -96,9 +97,13 @@ def lay_out_on_tiles(pieces: Sequence[CutPiece], paper: tuple[float, float]) -> 
 
     The test square stands whole on one sheet, the first that has room for it.
     """
-    sizes = (paper, paper[::-1])
-    tries = [_tiling(pieces, *each) for each in product(sizes, range(1, _MOST_COLUMNS + 1), (1, 0))]
-    return min(tries, key=lambda each: (len(each.tiles), each.rows * each.columns, each.columns))
+    tries: dict[tuple[int, float, float], _Try] = {}
+    for size, columns, along in product((paper, paper[::-1]), range(1, _MOST_COLUMNS + 1), (1, 0)):
+        each = _try(pieces, size, columns, along)
+        tries.setdefault((len(each.kept()), each.used, each.height), each)
+    fewest = min(count for count, _, _ in tries)
+    best = [each.tiling() for (count, _, _), each in tries.items() if count == fewest]
+    return min(best, key=lambda each: (len(each.tiles), each.rows * each.columns, each.columns))
 
 
 def whole_sheet(pieces: Sequence[CutPiece], width: float) -> Tiling:
@@ -113,20 +118,41 @@ def cut_shape(piece: CutPiece) -> shapely.Polygon:
     return shapely.Polygon(piece.cut)
 
 
-def _tiling(pieces: Sequence[CutPiece], size: tuple[float, float], columns: int, along: int) -> Tiling:
+@dataclass(frozen=True, eq=False)
+class _Try:
+    """Pieces that take a room ``used`` wide and ``height`` high [mm] of tiles of paper of a ``size``."""
+
+    placed: tuple[CutPiece, ...]
+    used: float
+    height: float
+    size: tuple[float, float]
+    tiles: tuple[Tile, ...]
+
+    def kept(self, more: tuple[BaseGeometry, ...] = ()) -> tuple[Tile, ...]:
+        """Return the sheets that show a piece, or one of ``more`` shapes."""
+        shapes = (*map(cut_shape, self.placed), *more)
+        return tuple(each for each in self.tiles if _shows(each, shapes))
+
+    def tiling(self) -> Tiling:
+        """Return the tiles with the test square on the first that has room for it."""
+        layout = _with_square(self.placed, self.used, self.height, [each.window for each in self.tiles])
+        kept = self.kept((shapely.box(*layout.square, *(layout.square + SQUARE)),))
+        rows, columns = max(each.row for each in kept), max(each.column for each in kept)
+        return Tiling(layout, self.size, kept, rows, columns)
+
+
+def _try(pieces: Sequence[CutPiece], size: tuple[float, float], columns: int, along: int) -> _Try:
+    """Return pieces on tiles of a number of columns at most, where the pieces are not wider."""
     window = np.array(size) - 2.0 * MARGIN
     step = window - OVERLAP
     placed, used, height = _shelves(pieces, columns * step[0] + OVERLAP, along)
-    columns = _count(used, step[0])
-    tiles = [
+    tiles = (
         Tile(row + 1, column + 1, (x, y - float(window[1]), x + float(window[0]), y))
         for row in range(_count(height, step[1]) + 1)  # one more: it has room for the square
-        for column in range(columns)
+        for column in range(_count(used, step[0]))
         for x, y in [(column * float(step[0]), -row * float(step[1]))]
-    ]
-    layout = _with_square(placed, used, height, [each.window for each in tiles])
-    kept = tuple(each for each in tiles if _shows(each, layout))
-    return Tiling(layout, size, kept, max(each.row for each in kept), columns)
+    )
+    return _Try(tuple(placed), used, height, size, tuple(tiles))
 
 
 def _count(length: float, step: float) -> int:
@@ -134,12 +160,11 @@ def _count(length: float, step: float) -> int:
     return max(1, math.ceil((length - OVERLAP) / step - 1e-9))
 
 
-def _shows(tile: Tile, layout: Layout) -> bool:
-    """Return whether a sheet shows anything that those to the left and above do not show already."""
+def _shows(tile: Tile, shapes: Sequence[BaseGeometry]) -> bool:
+    """Return whether a sheet shows any shape where those to the left and above do not."""
     left, low, right, top = tile.window
     own = shapely.box(left + OVERLAP * (tile.column > 1), low, right, top - OVERLAP * (tile.row > 1))
-    square = shapely.box(*layout.square, *(layout.square + SQUARE))
-    return any(own.intersects(each) for each in (square, *map(cut_shape, layout.pieces)))
+    return any(own.intersects(each) for each in shapes)
 
 
 def _shelves(pieces: Sequence[CutPiece], width: float, along: int = 1) -> tuple[list[CutPiece], float, float]:
@@ -171,16 +196,15 @@ def _with_square(placed: Sequence[CutPiece], used: float, height: float, boxes: 
     """Return the layout with its square in the first free place within one of the boxes."""
     taken = shapely.union_all([cut_shape(each) for each in placed])
     shapely.prepare(taken)
-    wide, high = SQUARE_ROOM
-    corners = np.array(
-        [
-            (x, y)
-            for left, low, right, top in boxes
-            for y in np.arange(top, low + high - 1e-9, -_STEP)
-            for x in np.arange(left, right - wide + 1e-9, _STEP)
-        ]
-    )
-    rooms = shapely.box(corners[:, 0], corners[:, 1] - high, corners[:, 0] + wide, corners[:, 1])
-    x, y = corners[int(np.argmin(shapely.intersects(taken, rooms)))]
+    x, y = next(place for each in boxes if (place := _free_place(taken, each)) is not None)
     square = np.array([x + _INSIDE, y - _INSIDE - SQUARE])
-    return Layout(tuple(placed), max(used, float(x + wide)), max(height, float(high - y)), square)
+    return Layout(tuple(placed), max(used, x + SQUARE_ROOM[0]), max(height, SQUARE_ROOM[1] - y), square)
+
+
+def _free_place(taken: BaseGeometry, box: Box) -> tuple[float, float] | None:
+    """Return the upper left corner of the first free room for the square in a box, by rows, if any."""
+    (left, low, right, top), (wide, high) = box, SQUARE_ROOM
+    rows, columns = np.arange(top, low + high - 1e-9, -_STEP), np.arange(left, right - wide + 1e-9, _STEP)
+    y, x = (each.ravel() for each in np.meshgrid(rows, columns, indexing="ij"))
+    free = np.flatnonzero(~shapely.intersects(taken, shapely.box(x, y - high, x + wide, y)))
+    return (float(x[free[0]]), float(y[free[0]])) if len(free) else None
