@@ -78,6 +78,12 @@ class ElasticName(Name):
     context = "elastic"
 
 
+class ClothName(Name):
+    """The title of a cloth, built-in or of the user's own."""
+
+    context = "cloth"
+
+
 @dataclass(frozen=True)
 class Length:
     """A length [mm], shown in the unit in use; ``digits`` are its decimals in millimetres."""

@@ -79,7 +79,7 @@ NO_DATA = (
 TRANSLATIONS = ("*/translations/qtbase_ja.qm", "*/translations/qtbase_en.qm")
 
 # The bytes of these stay as they were published.
-UNTOUCHED = ("numpy", "scipy", "PIL", "pillow", "PySide6", "shiboken6")
+UNTOUCHED = ("numpy", "scipy", "PIL", "pillow", "PySide6", "shapely", "shiboken6")
 
 # Python packages that an import somewhere names and that Busk never comes to: the network, consoles,
 # development.

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 
-from PySide6.QtCore import QBuffer, QIODevice, QMarginsF
-from PySide6.QtGui import QPageLayout, QPageSize, QPainter, QPdfWriter
+from PySide6.QtGui import QPainter
 
 from app.i18n.catalog import tr, using_language
 from app.rendering.palette import LIGHT
@@ -17,7 +15,7 @@ from app.report.cut_table import cut_blocks
 from app.report.document import ReportDocument
 from app.report.header import WIDE, head_blocks
 from app.report.layout import Block, Column, PlacedBlock, place_blocks
-from app.report.painter import A4, MARGIN, UNITS, PagePainter, elide, text_width
+from app.report.painter import A4, MARGIN, PagePainter, elide, text_width
 from app.report.tables import (
     HALF,
     bullet,
@@ -28,9 +26,6 @@ from app.report.tables import (
     note_blocks,
 )
 from app.report.text import cut_notes, foot_words
-from core.errors import ProjectError
-from core.files.atomic_write import atomic_path
-from core.messages import Message
 
 BOTTOM = A4[1] - MARGIN - 6.0
 """Down to where blocks stand; below it is the foot of the page [mm]."""
@@ -44,8 +39,6 @@ _CURVES = (100.0, 84.0, 70.0, 60.0, 50.0, 42.0)  # heights of the curves at the 
 _SEVERAL_PAGES = 84.0
 """The height of the curves where the levels of waist and hip follow [mm]."""
 
-_DOTS = 1200  # of the writer to an inch
-
 
 @dataclass(frozen=True, eq=False)
 class Pages:
@@ -54,6 +47,11 @@ class Pages:
     placed: tuple[PlacedBlock, ...]
     count: int
     foot: str
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Return width and height of each page [mm]."""
+        return A4
 
     def paint(self, painter: QPainter, page: int) -> None:
         """Paint a page, counted from 0; ``painter`` has ``paper.UNITS`` to a millimetre."""
@@ -146,42 +144,3 @@ def _halves(page: int, top: float) -> Iterator[Column]:
         yield Column(page, MARGIN, top, BOTTOM)
         yield Column(page, MARGIN + WIDE - HALF, top, BOTTOM)
         page, top = page + 1, MARGIN
-
-
-def write_pdf(path: str | Path, pages: Pages, title: str) -> None:
-    """Write the pages of a sheet, whole or not at all. Raises UserError if they cannot be written."""
-    target, data = Path(path), QBuffer()
-    data.open(QIODevice.OpenModeFlag.WriteOnly)
-    if not _paint(_writer(data, title), pages):
-        raise ProjectError(
-            Message("{target} cannot be written: the pages could not be drawn.", target=str(target)),
-            Message("Choose another folder."),
-        )
-    # Painted in memory first: of a disk that gets full Qt says nothing, half a sheet would count as written.
-    with atomic_path(target) as partial:
-        partial.write_bytes(data.data().data())
-
-
-def _writer(data: QBuffer, title: str) -> QPdfWriter:
-    writer = QPdfWriter(data)
-    writer.setTitle(title)
-    writer.setCreator("Busk")
-    writer.setResolution(_DOTS)
-    upright = QPageLayout.Orientation.Portrait
-    writer.setPageLayout(QPageLayout(QPageSize(QPageSize.PageSizeId.A4), upright, QMarginsF(0, 0, 0, 0)))
-    return writer
-
-
-def _paint(writer: QPdfWriter, pages: Pages) -> bool:
-    """Paint the pages, and return whether that went well."""
-    painter = QPainter()
-    if not painter.begin(writer):
-        return False
-    scale = _DOTS / 25.4 / UNITS
-    for page in range(pages.count):
-        if page and not writer.newPage():
-            return False
-        painter.resetTransform()
-        painter.scale(scale, scale)
-        pages.paint(painter, page)
-    return painter.end()

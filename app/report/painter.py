@@ -151,6 +151,17 @@ class PagePainter:
         left = x - _ALIGNED[align] * text_width(text, kind)
         self.painter.drawText(QPointF(left * UNITS, base * UNITS), text)
 
+    def letters(
+        self, x: float, base: float, text: str, size: float, ink: str = LIGHT.text, *, strong: bool = False
+    ) -> None:
+        """Write a line about ``x`` whose letters are of any ``size`` [mm]."""
+        font = QFont(_font("strong" if strong else "body"))
+        font.setPixelSize(round(size * UNITS))
+        self.painter.setFont(font)
+        self.painter.setPen(QColor(ink))
+        left = x * UNITS - 0.5 * QFontMetricsF(font).horizontalAdvance(text)
+        self.painter.drawText(QPointF(left, base * UNITS), text)
+
     def lines(self, x: float, top: float, lines: Iterable[str], kind: str, *, ink: str = "") -> float:
         """Write lines below each other and return where they end."""
         step = line_height(kind)

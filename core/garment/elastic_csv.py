@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import csv
 import re
 import unicodedata
 from collections.abc import Iterator, Sequence
 
 from core.document.elastic import Curve, Elastic
 from core.errors import LineError
+from core.files.table_text import decimal, header_line, header_values, is_yes, numbered_rows, percent
 from core.messages import Message, length_of
-
-LARGEST = 1_000_000
-"""Bytes of the largest table that is read."""
 
 ALLOWANCE = 20.0
 """For seams, at both ends together, where a table tells none [mm]."""
@@ -24,10 +21,6 @@ _NEWTONS = {"n": 1.0, "cn": 0.01, "gf": 0.00980665, "g": 0.00980665, "kgf": 9.80
 _WHOLE = {"%": 100.0, "1": 1.0}  # what elongations are divided by
 _ELONGATION = re.compile(r"elongation|extension|stretch|strain|dehnung|伸", re.IGNORECASE)
 _FORCE = re.compile(r"force|load|(?<!ex)tension|pull|kraft|荷重|張力|力", re.IGNORECASE)
-_TOLD = re.compile(
-    r"#\s*(name|width|allowance|source|estimate)(?:_mm)?\s*[:=]\s*(.*?)[\s,;]*$", re.IGNORECASE
-)
-_QUOTED = re.compile(r'^"(.*)"$')
 
 HELP = Message(
     "The table requires one row of headings with units, such as 'elongation %' and 'force N' "
@@ -74,7 +67,7 @@ def elastic_from_csv(text: str, name: str, width_mm: float | None = None) -> Ela
     allowance = ALLOWANCE
     if "allowance" in told:
         allowance = _number(told["allowance"].removesuffix("mm"), Message("seam allowance"), name)
-    estimate = told.get("estimate", "no").strip().lower() in ("yes", "true", "1")
+    estimate = is_yes(told.get("estimate", "no"))
     curve = _curve(text, name, width)
     source = told.get("source", "").replace(_UNFILLED, "")
     elastic = Elastic(name, width, curve, allowance, source, estimate)
@@ -115,33 +108,20 @@ def csv_of(elastic: Elastic) -> str:
     """Return an elastic as a table that ``elastic_from_csv`` reads back as it was, its source on one line."""
     source = " ".join(elastic.source.split())
     told = {
-        "name": _kept(elastic.name),
+        "name": elastic.name,
         "width_mm": f"{elastic.width_mm:.12g}",
         "allowance_mm": f"{elastic.allowance_mm:.12g}",
-        "source": _kept(source),
+        "source": source,
         "estimate": "yes" if elastic.estimate else "no",
     }
-    heading = [*(f"# {key}: {value}" for key, value in told.items()), "elongation %,force N"]
-    rows = [f"{_percent(elongation)},{force!r}" for elongation, force in elastic.curve]
+    heading = [*(header_line(key, value) for key, value in told.items()), "elongation %,force N"]
+    rows = [f"{percent(elongation)},{force!r}" for elongation, force in elastic.curve]
     return "\n".join([*heading, *rows]) + "\n"
 
 
 def _told(text: str) -> dict[str, str]:
-    """Return what stands over a table, in words."""
-    found = (match for match in map(_TOLD.match, text.splitlines()) if match)
-    return {match[1].lower(): _QUOTED.sub(r"\1", match[2]) for match in found}
-
-
-def _kept(words: str) -> str:
-    """Return words so that they are read back: quoted if their ends would be taken for those of cells."""
-    plain = _TOLD.match(f"# name: {words}")
-    return words if plain and plain[2] == words and not _QUOTED.match(words) else f'"{words}"'
-
-
-def _percent(share: float) -> str:
-    """Return a share in %, rounded where that comes back as the same share."""
-    short = f"{100.0 * share:.12g}"
-    return short if float(short) / 100.0 == share else repr(100.0 * share)
+    """Return what stands over a table, in words; of lengths without their unit."""
+    return {key.removesuffix("_mm"): words for key, words in header_values(text).items()}
 
 
 def _number(text: str, what: Message, name: str) -> float:
@@ -158,22 +138,17 @@ def _number(text: str, what: Message, name: str) -> float:
 
 def _curve(text: str, name: str, width: float) -> Curve:
     """Return the points of a table with the unstretched elastic first."""
-    numbered = [
-        (count, line)
-        for count, line in enumerate(text.splitlines(), start=1)
-        if line.strip(" \t,;") and not line.lstrip().startswith("#")
-    ]
+    comma, numbered = numbered_rows(text)
     if not numbered:
         raise LineError(Message("The table {name} is empty.", name=name), HELP)
-    comma = next((mark for mark in "\t;," if mark in numbered[0][1]), "")
     if not comma:
         raise LineError(
             Message("The table {name} has only one column.", name=name),
             HELP,
         )
-    heading, *rows = ((count, _cells(line, comma)) for count, line in numbered)
+    heading, *rows = numbered
     columns = _columns(heading[1], name, width)
-    points = list(_points(rows, columns, name, "," if comma != "," else "."))
+    points = list(_points(rows, columns, name, comma))
     if points and points[0] == (0.0, 0.0):
         points = points[1:]
     if len(points) < FEWEST:
@@ -191,14 +166,6 @@ def _curve(text: str, name: str, width: float) -> Curve:
             Message("Measure from zero force, or remove that row."),
         )
     return ((0.0, 0.0), *points)
-
-
-def _cells(line: str, comma: str) -> Sequence[str]:
-    """Return the cells of a line, none if they cannot be read; a quotation mark holds no other line in it."""
-    try:
-        return next(csv.reader([line], delimiter=comma))
-    except csv.Error:
-        return ()
 
 
 def _columns(heading: Sequence[str], name: str, width: float) -> tuple[tuple[int, float], tuple[int, float]]:
@@ -242,12 +209,12 @@ def _points(
     rows: Sequence[tuple[int, Sequence[str]]],
     columns: tuple[tuple[int, float], tuple[int, float]],
     name: str,
-    point: str,
+    comma: str,
 ) -> Iterator[tuple[float, float]]:
-    """Yield the points of a table, rows with their lines in it, whose figures have the decimal ``point``."""
+    """Yield the points of a table, rows with their lines in it, whose cells are separated by ``comma``."""
     for count, row in rows:
         try:
-            stretched, pulled = (float(row[at].strip().replace(point, ".")) for at, _ in columns)
+            stretched, pulled = (decimal(row[at], comma) for at, _ in columns)
         except (ValueError, IndexError):
             raise LineError(
                 Message(

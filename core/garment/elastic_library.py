@@ -16,8 +16,8 @@ from core.document.elastic import Elastic
 from core.document.storage.project_file import safe_name
 from core.errors import LineError, UserError, reason_of
 from core.files.atomic_write import private_folder, write_text
-from core.files.regular_file import read_regular
-from core.garment.elastic_csv import ALLOWANCE, LARGEST, TEMPLATE, csv_of, elastic_from_csv, has_allowance
+from core.files.table_text import best_names, read_table_text
+from core.garment.elastic_csv import ALLOWANCE, TEMPLATE, csv_of, elastic_from_csv, has_allowance
 from core.messages import ElasticName, Message
 
 __all__ = [
@@ -95,58 +95,28 @@ def find_elastic(text: str) -> Elastic:
     Raises LineError if there is none, or more than one.
     """
     elastics = library()
-    words = _words(text)
-    exact = [each for name, each in elastics.items() if _words(name) == words]
-    alike = [each for name, each in elastics.items() if set(words) <= set(_words(name))]
-    found = exact or (alike if words else [])
+    found = best_names(text, elastics)
     if len(found) > 1:
-        names = "; ".join(each.name for each in found)
         raise LineError(
             Message("Several elastics match '{text}'.", text=text),
-            Message("Choose one of: {choices}.", choices=names),
+            Message("Choose one of: {choices}.", choices="; ".join(found)),
         )
     if not found:
         raise LineError(
             Message("No elastic matches '{text}'.", text=text),
             Message("Choose one of: {choices}.", choices=tuple(map(ElasticName, elastics))),
         )
-    return found[0]
-
-
-def _words(name: str) -> list[str]:
-    """Return the words of a name without capitals and commas."""
-    return name.casefold().replace(",", " ").split()
+    return elastics[found[0]]
 
 
 def read_elastic(path: Path, width_mm: float | None = None) -> Elastic:
     """Read a table of one's own; its name is the file's unless it tells one. Raises LineError."""
-    return elastic_from_csv(_text_of(path), path.stem, width_mm)
+    return elastic_from_csv(read_table_text(path, LineError), path.stem, width_mm)
 
 
 def specified_allowance(path: Path) -> bool:
     """Return whether a table tells the allowance, or ``ALLOWANCE`` is taken. Raises LineError."""
-    return has_allowance(_text_of(path))
-
-
-def _text_of(path: Path) -> str:
-    try:
-        data = read_regular(path, LARGEST)
-    except OSError as problem:
-        raise LineError(
-            Message(
-                "The table {name} cannot be read: {problem}.", name=path.name, problem=reason_of(problem)
-            ),
-            Message("Check the name and folder of the table."),
-        ) from problem
-    if b"\0" in data:
-        raise LineError(
-            Message("The file {name} is not a text file.", name=path.name),
-            Message("Export the table as CSV and import that file."),
-        )
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return data.decode("cp932", errors="replace")  # what spreadsheets write in Japan
+    return has_allowance(read_table_text(path, LineError))
 
 
 def write_elastic(path: Path, elastic: Elastic) -> None:

@@ -18,8 +18,8 @@ from app.gui.main_window import MainWindow
 from app.gui.widgets.thumbnail_list import VIEW
 from app.i18n.catalog import language
 from app.report.document import SHOTS
-from app.report.pages import write_pdf
 from app.report.painter import A4
+from app.report.pdf_file import write_pdf
 from core.measurements.table import before_after, measure_rows
 
 pytestmark = pytest.mark.usefixtures("empty_house")

@@ -156,7 +156,8 @@ def _write(solution: Solution, sheet: Report, how: ReportOptions) -> list[str]:
     from app.gui.application import application  # noqa: PLC0415 (brings Qt along)
     from app.presenters.lines import line_colours  # noqa: PLC0415
     from app.report.document import ReportDocument  # noqa: PLC0415
-    from app.report.pages import pages_of, write_pdf  # noqa: PLC0415
+    from app.report.pages import pages_of  # noqa: PLC0415
+    from app.report.pdf_file import write_pdf  # noqa: PLC0415
 
     application(unit=how.length_unit)
     names = [line.name for line in solution.stages.drawn_lines]

@@ -13,7 +13,8 @@ from PySide6.QtGui import QImage
 from app.gui.theme.stylesheet import load_fonts
 from app.report.cut_rows import line_notes
 from app.report.document import SHOTS, ReportDocument
-from app.report.pages import pages_of, write_pdf
+from app.report.pages import pages_of
+from app.report.pdf_file import write_pdf
 from core.document.lines import LineSettings
 from core.export.report_data import Heading, Report, make_report
 from core.garment.presets import built_in, with_preset

@@ -22,8 +22,9 @@ from app.presenters.lines import line_colours
 from app.report.cut_rows import cut_views
 from app.report.cut_table import EDGES
 from app.report.document import SHOT_SIZES, SHOTS, ReportDocument
-from app.report.pages import pages_of, write_pdf
+from app.report.pages import pages_of
 from app.report.painter import A4, MARGIN, TYPES
+from app.report.pdf_file import write_pdf
 from core.document.lines import LineSettings
 from core.errors import UserError
 from core.export.report_data import Heading, Report, make_report

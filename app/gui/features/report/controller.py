@@ -24,8 +24,9 @@ from app.presenters.lines import line_colours
 from app.presenters.messages import render
 from app.rendering.ambient_occlusion import bake_occlusion
 from app.report.document import ReportDocument
-from app.report.pages import Pages, pages_of, write_pdf
+from app.report.pages import Pages, pages_of
 from app.report.painter import UNITS
+from app.report.pdf_file import write_pdf
 from core.errors import ProjectError, UserError
 from core.export.csv_cells import ENCODING
 from core.export.report_data import Heading, Report, make_report

@@ -1,0 +1,228 @@
+"""Pieces: what is cut from cloth, flat, by the sides of their outlines; left and right as one where equal."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from core.errors import PatternError
+from core.geometry.mesh import Floats
+from core.geometry.plane_sections import arc_length, interpolate
+from core.messages import Message
+
+Points2 = Floats
+"""Places on paper, shape (k, 2) [mm]: x across, y up on the body."""
+
+SideKey = tuple[str, int]
+"""A side by the key of its piece and its number in it."""
+
+SAME = 1.0
+"""Left and right are one piece where they differ by less anywhere [mm]."""
+
+BOTH = "both"
+"""The side of a piece that is cut for both sides of the body, the right one mirrored."""
+
+_OTHER = {"left": "right", "right": "left"}
+_SAME_GRAIN = float(np.cos(np.radians(3.0)))
+
+_STEP = 1.0  # between places where two outlines are compared [mm]
+
+
+@dataclass(frozen=True, eq=False)
+class Side:
+    """A stretch of an outline between two corners: a seam or an edge.
+
+    ``points`` (k, 2) run counter-clockwise round the piece [mm]; its ends are shared with the neighbours.
+    ``notches`` are shares of its length from its first point [1]. ``partner`` is the side that is sewn to it,
+    reversed; None for an edge.
+    """
+
+    name: str
+    points: Points2
+    allowance: float
+    notches: tuple[float, ...] = ()
+    partner: SideKey | None = None
+
+    @property
+    def length(self) -> float:
+        """Return the length on the sew line [mm]."""
+        return float(arc_length(self.points)[-1])
+
+    def place(self, share: float) -> tuple[Floats, Floats]:
+        """Return the place at a share of the length and the unit direction outward, (2,) and (2,) [mm, 1]."""
+        along = arc_length(self.points)
+        at = share * along[-1]
+        k = int(np.clip(np.searchsorted(along, at, side="right") - 1, 0, len(along) - 2))
+        step = self.points[k + 1] - self.points[k]
+        way = step / max(float(np.linalg.norm(step)), 1e-12)
+        return self.points[k] + way * (at - along[k]), np.array([way[1], -way[0]])
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """A piece that is cut ``count`` times from ``cloth``, named by its title.
+
+    ``side`` is "left", "right", ``BOTH`` (cut mirrored) or "" (over the middle of the body). ``sides`` close
+    the outline, counter-clockwise. ``internal`` are lines inside by kind (dart legs, control lines), each
+    (k, 2) [mm]. ``grain`` and ``stretch`` are the unit directions of the grain line and greatest stretch.
+    """
+
+    name: str
+    side: str
+    cloth: str
+    count: int
+    sides: tuple[Side, ...]
+    internal: tuple[tuple[str, Points2], ...] = ()
+    grain: tuple[float, float] = (0.0, 1.0)
+    stretch: tuple[float, float] = (1.0, 0.0)
+
+    def __post_init__(self) -> None:
+        after = (*self.sides[1:], *self.sides[:1])
+        gaps = [
+            float(np.linalg.norm(b.points[0] - a.points[-1])) for a, b in zip(self.sides, after, strict=True)
+        ]
+        if max(gaps, default=np.inf) > 1e-6:
+            raise PatternError(
+                Message("The outline of the piece '{name}' is not closed.", name=self.key),
+                Message("Flatten the piece again."),
+            )
+
+    @property
+    def key(self) -> str:
+        """Return the name by which sides refer to the piece: "lower cup left"."""
+        return f"{self.name} {self.side}" if self.side in _OTHER else self.name
+
+    @property
+    def outline(self) -> Points2:
+        """Return the sew line without its first point again, (n, 2) [mm]."""
+        return np.concatenate([side.points[:-1] for side in self.sides])
+
+    @property
+    def area(self) -> float:
+        """Return the area inside the sew line [mm^2]."""
+        return signed_area(self.outline)
+
+    def moved(self, move: Callable[[Points2], Points2]) -> Piece:
+        """Return the piece with all points moved by a function of places (k, 2), which keeps directions."""
+        return replace(
+            self,
+            sides=tuple(replace(each, points=move(each.points)) for each in self.sides),
+            internal=tuple((kind, move(points)) for kind, points in self.internal),
+        )
+
+
+def signed_area(outline: Points2) -> float:
+    """Return the area of an outline (n, 2), positive where it is counter-clockwise [mm^2]."""
+    after = np.roll(outline, -1, axis=0)
+    return 0.5 * float(outline[:, 0] @ after[:, 1] - outline[:, 1] @ after[:, 0])
+
+
+def mirrored(piece: Piece) -> Piece:
+    """Return the piece with its face down: x negative, sides in the other order."""
+    flip = np.array([-1.0, 1.0])
+    sides = tuple(
+        replace(each, points=(flip * each.points)[::-1], notches=tuple(1.0 - s for s in each.notches[::-1]))
+        for each in piece.sides[::-1]
+    )
+    return replace(
+        piece,
+        side=_OTHER.get(piece.side, piece.side),
+        sides=sides,
+        internal=tuple((kind, flip * points) for kind, points in piece.internal),
+        grain=(-piece.grain[0], piece.grain[1]),
+        stretch=(-piece.stretch[0], piece.stretch[1]),
+    )
+
+
+@dataclass
+class _Pairing:
+    """Which pieces stand for others, while left and right are compared: sides by their keys."""
+
+    sides: dict[SideKey, SideKey] = field(default_factory=dict)
+    right: set[str] = field(default_factory=set)
+
+
+def merge_mirrored(pieces: Sequence[Piece], same_mm: float = SAME) -> tuple[Piece, ...]:
+    """Return pieces with left and right as one, cut twice and mirrored, where they are the same.
+
+    They are if no place of the mirrored sew line is ``same_mm`` or more from that of the other, side by side,
+    nor a notch, the grain lines differ by less than 3 degrees, and cloth, allowances and number are equal.
+    The left one is kept. Partners refer to what is kept.
+    """
+    known = {each.key: each for each in pieces}
+    pairing = _Pairing()
+    for left in pieces:
+        right = known.get(f"{left.name} right") if left.side == "left" else None
+        turn = None if right is None else _matching_turn(left, mirrored(right), same_mm)
+        if right is not None and turn is not None:
+            count = len(left.sides)
+            for number in range(count):
+                kept = (left.name, number)
+                pairing.sides[left.key, number] = kept
+                pairing.sides[right.key, count - 1 - (number + turn) % count] = kept
+            pairing.right.add(right.key)
+    return tuple(_kept(each, pairing) for each in pieces if each.key not in pairing.right)
+
+
+def _kept(piece: Piece, pairing: _Pairing) -> Piece:
+    """Return a piece whose sides refer to what was kept, for both sides if it stands for both."""
+    sides = tuple(
+        replace(each, partner=pairing.sides.get(each.partner, each.partner) if each.partner else None)
+        for each in piece.sides
+    )
+    if (piece.key, 0) not in pairing.sides:
+        return replace(piece, sides=sides)
+    return replace(piece, side=BOTH, count=2 * piece.count, sides=sides)
+
+
+def _matching_turn(piece: Piece, other: Piece, same_mm: float) -> int | None:
+    """Return by how many sides the outline of another piece is turned where both are the same, else None."""
+    if (piece.cloth, piece.count, len(piece.sides)) != (other.cloth, other.count, len(other.sides)):
+        return None
+    for turn in range(len(other.sides)):
+        turned = replace(other, sides=(*other.sides[turn:], *other.sides[:turn]))
+        alike = all(_like(one, two, same_mm) for one, two in zip(piece.sides, turned.sides, strict=True))
+        if alike and _is_same(piece, turned, same_mm):
+            return turn
+    return None
+
+
+def _like(one: Side, two: Side, same_mm: float) -> bool:
+    """Return whether two sides have one name, one allowance, and notches in the same places."""
+    if (one.name, one.allowance, len(one.notches)) != (two.name, two.allowance, len(two.notches)):
+        return False
+    return all(
+        abs(a - b) * one.length < same_mm
+        for a, b in zip(sorted(one.notches), sorted(two.notches), strict=True)
+    )
+
+
+def _is_same(piece: Piece, other: Piece, same_mm: float) -> bool:
+    """Return whether two outlines are the same at equal shares of their sides, laid on each other as well."""
+    pairs = list(zip(piece.sides, other.sides, strict=True))
+    counts = [max(2, round(max(a.length, b.length) / _STEP) + 1) for a, b in pairs]
+    ones, twos = (
+        np.concatenate([_even(side.points, count) for side, count in zip(each.sides, counts, strict=True)])
+        for each in (piece, other)
+    )
+    ones, twos = ones - ones.mean(axis=0), twos - twos.mean(axis=0)
+    u, _, vt = np.linalg.svd(twos.T @ ones)
+    spin = u @ np.diag([1.0, float(np.linalg.det(u @ vt))]) @ vt
+    apart = np.linalg.norm(twos @ spin - ones, axis=1).max()
+    return bool(apart < same_mm and np.array(other.grain) @ spin @ np.array(piece.grain) > _SAME_GRAIN)
+
+
+def _even(points: Points2, count: int) -> Points2:
+    """Return ``count`` places at equal distances along a side."""
+    along = arc_length(points)
+    return interpolate(np.linspace(0.0, along[-1], count), along, points)
+
+
+def sewn_length(pieces: Mapping[str, Piece], side: Side) -> float | None:
+    """Return the length of what is sewn to a side [mm]; None for an edge, or where its piece is not there."""
+    if side.partner is None or side.partner[0] not in pieces:
+        return None
+    name, number = side.partner
+    return pieces[name].sides[number].length
