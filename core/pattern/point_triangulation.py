@@ -40,7 +40,7 @@ def greedy_triangles(shares: Floats, places: Floats, lines: Flags) -> tuple[Indi
     if (lines & ~edge).any():
         raise PatternError(
             Message("Seams cross each other within a triangle of the skin in a way that cannot be cut."),
-            Message("Move one of the seams by some millimetres."),
+            Message("Move one of the seams a little."),
         )
     return _empty_triangles(area, edge)
 
@@ -82,6 +82,6 @@ def _empty_triangles(area: Floats, edge: Flags) -> tuple[Indices, Faces]:
     if (np.abs(total - 1.0) > 1e-6).any():
         raise PatternError(
             Message("A triangle of the skin cannot be cut along the seams."),
-            Message("Move one of the seams by some millimetres."),
+            Message("Move one of the seams a little."),
         )
     return owner, faces
