@@ -12,6 +12,9 @@ from core.geometry.triangulate import clip_ears, inside_polygon
 _CLEAR = 0.6
 """Points within keep so many spacings from border and slits. Source: ours."""
 
+_THREAD = 1e-6
+"""A triangle of less area than this part of its longest side squared is none [1]."""
+
 
 def grid_within(ring: Floats, fixed: Floats, spacing: float) -> Floats:
     """Return places of an even grid in the polygon ``ring`` (b, 2), clear of it and of ``fixed``, (k, 2).
@@ -42,7 +45,7 @@ def joined_by_triangles(points: Floats, border: Indices, lines: Indices) -> Face
         return None
     a, b, c = (points[faces[:, k]] for k in range(3))
     turn = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
-    faces = np.where((turn < 0.0)[:, None], faces[:, ::-1], faces)
+    faces = _without_threads(points, np.where((turn < 0.0)[:, None], faces[:, ::-1], faces))
     outline = np.stack([border, np.roll(border, -1)], axis=1)
     wanted = np.concatenate([outline, lines])
     for start, end in wanted[~np.isin(_keys(wanted), _keys(half_edges(faces)))].tolist():
@@ -56,6 +59,28 @@ def joined_by_triangles(points: Floats, border: Indices, lines: Indices) -> Face
     free = np.sort(ahead[~np.isin(ahead, back)])
     whole = np.array_equal(free, np.sort(outline[:, 0] << 31 | outline[:, 1]))
     return faces if whole and len(np.unique(ahead)) == len(ahead) else None
+
+
+def _without_threads(points: Floats, faces: Faces) -> Faces:
+    """Leave out triangles whose corners lie on a line: each neighbour is divided at the corner between."""
+    for _ in range(len(faces)):
+        corners = points[faces]
+        side = np.linalg.norm(np.roll(corners, -2, axis=1) - np.roll(corners, -1, axis=1), axis=2)
+        thread = _left_of(corners[:, 0], corners[:, 1], corners[:, 2]) < _THREAD * side.max(axis=1) ** 2
+        if not thread.any():
+            break
+        row = int(np.where(thread, side.max(axis=1), 0.0).argmax())
+        middle, start, end = np.roll(faces[row], -int(side[row].argmax())).tolist()
+        has_both = (faces == start).any(axis=1) & (faces == end).any(axis=1)
+        beside = next((each for each in np.flatnonzero(has_both).tolist() if each != row), None)
+        parts = []
+        if beside is not None:
+            tip = next(vertex for vertex in faces[beside].tolist() if vertex not in (start, end))
+            parts = [(start, middle, tip), (middle, end, tip)]
+            parts = [part if _left_of(*points[list(part)]) > 0.0 else part[::-1] for part in parts]
+        kept = np.delete(faces, [row] if beside is None else [row, beside], axis=0)
+        faces = np.concatenate([kept, np.array(parts, dtype=np.int64).reshape(-1, 3)])
+    return faces
 
 
 def _keys(edges: Indices) -> Indices:

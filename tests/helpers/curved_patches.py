@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
 import trimesh
@@ -27,7 +29,7 @@ EVEN = PlainCloth()
 LACE = PlainCloth((1.0, 3.0, 0.2), 0.2, (0.15, 0.05))
 
 
-def sheet(place: callable, width: float, height: float, step: float = 3.0) -> Mesh:
+def sheet(place: Callable, width: float, height: float, step: float = 3.0) -> Mesh:
     """A rectangle about the origin of (u, v), bent to ``place`` of u and v; u to the right from outside."""
     columns, rows = round(width / step), round(height / step)
     u, v = np.meshgrid(np.linspace(-0.5, 0.5, columns + 1) * width, np.linspace(-0.5, 0.5, rows + 1) * height)
@@ -38,11 +40,11 @@ def sheet(place: callable, width: float, height: float, step: float = 3.0) -> Me
     return Mesh(np.stack(place(u.ravel(), v.ravel()), axis=1), faces)
 
 
-def loop(name: str, place: callable, corners: list[tuple[float, float]], **flags: bool) -> list[SurfaceCurve]:
+def loop(name: str, place: Callable, corners: list[tuple[float, float]], **flags: bool) -> list[SurfaceCurve]:
     """The sides of a polygon of (u, v), each a curve."""
     ends = [*corners, corners[0]]
     curves = []
-    for number, (start, end) in enumerate(zip(ends[:-1], ends[1:], strict=True)):
+    for number, (start, end) in enumerate(pairwise(ends)):
         share = np.linspace(0.0, 1.0, 80)[:, None]
         u, v = (np.array(start) + share * (np.array(end) - np.array(start))).T
         curves.append(SurfaceCurve(f"{name} {number}", np.stack(place(u, v), axis=1), **flags))
@@ -70,7 +72,7 @@ def ball(radius: float = 70.0, subdivisions: int = 5) -> Mesh:
 
 
 def on_ball(clock: np.ndarray | float, angle: np.ndarray | float, radius: float = 70.0) -> np.ndarray:
-    """Places at an ``angle`` from the pole in front (-y), at a ``clock`` round it, both in degrees, (k, 3)."""
+    """Places at an ``angle`` from the pole in front (-y), at a ``clock`` round it [degrees], (k, 3)."""
     clock, angle = np.broadcast_arrays(np.radians(clock), np.radians(angle))
     around = np.sin(angle)
     return radius * np.stack([around * np.sin(clock), -np.cos(angle), around * np.cos(clock)], axis=-1)

@@ -47,7 +47,9 @@ def _turn(p: np.ndarray, q: np.ndarray) -> np.ndarray:
 
 def bra(mesh: Mesh, landmarks: Landmarks) -> tuple[tuple[SurfaceCurve, ...], tuple[PanelSeed, ...]]:
     """Return curves and panels of a bra: two-part cups, bridge, cradle and wings, nine panels."""
-    centre = 0.5 * (landmarks.position("front_centre_underbust") + landmarks.position("back_centre_underbust"))
+    centre = 0.5 * (
+        landmarks.position("front_centre_underbust") + landmarks.position("back_centre_underbust")
+    )
     wrap = Wrap(mesh, (float(centre[0]), float(centre[1])))
     marks = {
         name: (np.degrees(np.arctan2(point[0], centre[1] - point[1])), point[2])
@@ -67,7 +69,9 @@ def bra(mesh: Mesh, landmarks: Landmarks) -> tuple[tuple[SurfaceCurve, ...], tup
     def way(*places: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
         at = np.linspace(0.0, 2.0, 61)
         known = np.linspace(0.0, 2.0, len(places))
-        return tuple(np.polyval(np.polyfit(known, column, len(places) - 1), at) for column in zip(*places))
+        return tuple(
+            np.polyval(np.polyfit(known, column, len(places) - 1), at) for column in np.transpose(places)
+        )
 
     def ends(clock: float) -> tuple[float, float]:
         return tuple(float(each) for each in root(np.array(clock)))
@@ -95,8 +99,8 @@ def bra(mesh: Mesh, landmarks: Landmarks) -> tuple[tuple[SurfaceCurve, ...], tup
             ("cradle", (middle, band + 10.0), "sheer"),
             ("wing", (130.0, band + 15.0), "power net"),
         ):
-            place = wrap(np.array([sign * place[0]]), np.array([place[1]]))[0]
-            seeds.append(PanelSeed(f"{name} {side}", place, cloth))
+            at = wrap(np.array([sign * place[0]]), np.array([place[1]]))[0]
+            seeds.append(PanelSeed(f"{name} {side}", at, cloth))
     inner = ends(300.0)
     top = wrap(*way((-inner[0], inner[1]), (0.0, inner[1] - 8.0), inner))
     curves.append(SurfaceCurve("bridge top", top, is_edge=True))

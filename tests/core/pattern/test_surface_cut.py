@@ -1,5 +1,7 @@
 """Curves become edges of the skin: nothing of it is lost, and they may cross, end on each other and pinch."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from curved_patches import ball, circle, meridian, on_ball
@@ -39,7 +41,7 @@ def test_curves_are_edges_in_order():
     cut = cut_surface(ball(), CROSSING)
     known = set(map(tuple, as_mesh(cut).edges.tolist()))
     for chain in cut.chains:
-        assert all(tuple(sorted(pair)) in known for pair in zip(chain[:-1].tolist(), chain[1:].tolist()))
+        assert all(tuple(sorted(pair)) in known for pair in pairwise(chain.tolist()))
     assert {tuple(edge) for edge in cut.edges.tolist()} <= known
 
 
@@ -78,7 +80,9 @@ def test_an_end_near_a_curve_is_put_on_it(short):
 
 
 def test_an_end_farther_away_stays_free():
-    cut = cut_surface(ball(), (circle(60.0), meridian("end", 110.0, 20.0, 60.0 - np.degrees(1.5 * SNAP / 70.0))))
+    cut = cut_surface(
+        ball(), (circle(60.0), meridian("end", 110.0, 20.0, 60.0 - np.degrees(1.5 * SNAP / 70.0)))
+    )
     assert cut.chains[1][-1] not in cut.chains[0]
     assert np.bincount(cut.edges.ravel())[cut.chains[1][-1]] == 1
 
