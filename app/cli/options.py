@@ -47,10 +47,10 @@ PRESET_HELP = (
 _AXIS = "such as {axis}, or a direction x,y,z of the file for a tilted body"
 
 
-def add_scan(parser: ArgumentParser) -> None:
+def add_scan(parser: ArgumentParser, *, required: bool = True) -> None:
     """Add the input file, and the options that orient, edit and mark a scan."""
     kinds = f"a scan ({SCAN_KINDS}, each also compressed as {PACKED}) or a project (.busk)"
-    parser.add_argument("input", metavar="SCAN_OR_PROJECT", help=kinds)
+    parser.add_argument("input", metavar="SCAN_OR_PROJECT", nargs=None if required else "?", help=kinds)
     units = tuple(MILLIMETRES)
     parser.add_argument("--unit", type=str.lower, choices=units, help="unit of the scan (default: detected)")
     parser.add_argument("--up", metavar="AXIS", help=f"up axis of the scan: {_AXIS.format(axis='+z')}")

@@ -21,6 +21,7 @@ COMMANDS = {
     "detect": "detect the landmarks of a scan",
     "measure": "measure a scan, or a project before and after",
     "cut": "compute the cut length of each active line",
+    "pattern": "compute pattern pieces of a garment block and write them for plotters and CAD",
     "pressure": "compute the contact pressure of each active line in kPa and mmHg, and rate it",
     "uncertainty": "compute the uncertainty (±) of the results and list the model limitations",
     "report": "write a report (PDF): sizes, cut lengths, measurements, contact pressures, pictures",

@@ -190,7 +190,7 @@ def test_pairs_of_the_seat_are_unlinked_and_closed_bands_are_not() -> None:
     assert not moves_one_side(stages.lower), "the back centre is on neither side"
     assert splittable_lines(stages.design, TEMPLATE) == ("sling-left", "sling-right")
     apart = split_sides(stages.design, TEMPLATE)
-    assert apart.linked_pair("sling-left") == ("sling-left",)
+    assert apart.linked_lines("sling-left") == ("sling-left",)
     assert moves_one_side(build(apart, stages).lower)
     only = split_sides(wearing(STRAIGHT | SEAT).design, TEMPLATE, ("buttock-lift-left",))
     assert only.active_lines() == {"mid-bust"}, "what is not named stays whole"

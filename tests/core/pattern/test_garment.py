@@ -1,0 +1,106 @@
+"""Blocks become pieces: on bodies of the samples, with seams that fit, and a verdict on their cloths."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+
+import numpy as np
+import pytest
+from whole_trunk import trunk_stages
+
+from core.pattern.allowance import cut_piece
+from core.pattern.block import built_in_blocks, find_block
+from core.pattern.cloth import built_in
+from core.pattern.garment import CutGarment, Pattern, cut_garment
+from core.pattern.places import BodyPlaces
+from core.pattern.seam_curves import SeamDrawing
+from core.pipeline.build import Stages
+
+Built = Callable[[str], Stages]
+CLOTHS = {cloth.name: cloth for cloth in built_in()}
+
+
+def stages_of(built: Built, sample: str) -> Stages:
+    return trunk_stages() if sample == "trunk" else built(sample)
+
+
+@cache
+def drawing(stages: Stages) -> SeamDrawing:
+    return SeamDrawing(BodyPlaces.of(stages))
+
+
+@cache
+def cut(stages: Stages, block: str) -> CutGarment:
+    return cut_garment(drawing(stages), find_block(block))
+
+
+@cache
+def pattern(stages: Stages, block: str) -> Pattern:
+    return cut(stages, block).flat(stages.body.smoothed.vertices, CLOTHS)
+
+
+def cases() -> list[tuple[str, str]]:
+    """Each block with the samples that it is for."""
+    return [
+        (block.name, sample)
+        for block in built_in_blocks()
+        for sample in (("trunk",) if block.needs_lower_trunk else ("person", "mannequin"))
+    ]
+
+
+@pytest.mark.parametrize(("block", "sample"), cases())
+def test_panels_lie_flat_without_folds_and_seams_fit(built: Built, block: str, sample: str) -> None:
+    found = pattern(stages_of(built, sample), block)
+    for flat in found.flats:
+        if flat.is_folded or flat.overlaps:
+            assert (block, sample) == ("two-part-cup", "person"), "which is too full for it"
+            assert not found.fits(flat)
+        assert flat.areas.sum() == pytest.approx(flat.panel.covers, rel=0.02), "chords of 4 to 9 mm"
+    for fit in found.matched.fits:
+        assert fit.together[0] == pytest.approx(fit.together[1], abs=0.05), fit.seam.name
+        assert fit.off < 0.1
+        assert found.seam_length(fit) == pytest.approx(fit.together[0], rel=0.35), (
+            "apart from ease and strain"
+        )
+
+
+@pytest.mark.parametrize(("block", "sample"), cases())
+def test_every_piece_is_within_its_cut_line(built: Built, block: str, sample: str) -> None:
+    pieces = pattern(stages_of(built, sample), block).pieces()
+    plans = find_block(block).panels
+    assert {piece.name for piece in pieces} == {plan.name for plan in plans}
+    assert sum(piece.count for piece in pieces) == sum(1 + plan.each for plan in plans)
+    for piece in pieces:
+        made = cut_piece(piece)
+        assert made.piece.area > 0.0
+        low, high = piece.outline.min(axis=0), piece.outline.max(axis=0)
+        np.testing.assert_array_less(made.cut.min(axis=0), low - 6.0)
+        np.testing.assert_array_less(high + 6.0, made.cut.max(axis=0))
+
+
+def test_a_cup_in_one_piece_is_more_than_its_cloth_takes_up(built: Built) -> None:
+    found = pattern(built("person"), "one-part-cup")
+    assert not found.fits_cloths
+    divided = pattern(built("person"), "three-part-cup")
+    most = max(divided.strains[name].within for name in divided.strains if "cup" in name)
+    assert found.strains["cup left"].within > 1.5 * most
+
+
+def test_panels_ride_on_the_body_and_start_from_the_pattern_before(built: Built) -> None:
+    stages = built("mannequin")
+    garment, before = cut(stages, "three-part-cup"), pattern(stages, "three-part-cup")
+    rest = stages.body.smoothed.vertices
+    apex = stages.landmarks.position("bust_point_left")
+    near = np.exp(-(((rest - apex) / 60.0) ** 2).sum(axis=1))
+    moved = rest - np.array([0.0, 6.0, 0.0]) * near[:, None]  # the left breast comes forward
+    cold = garment.flat(moved, CLOTHS)
+    warm = garment.flat(moved, CLOTHS, before.matched)
+    for one, other in zip(cold.flats, warm.flats, strict=True):
+        assert np.abs(one.points - other.points).max() < 0.2
+    number = [panel.name for panel in garment.panels].index("lower cup left")
+    assert cold.flats[number].areas.sum() > 1.01 * before.flats[number].areas.sum()
+    turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    turned = garment.flat(rest @ turn.T + 40.0, CLOTHS, before.matched)
+    for one, other in zip(before.flats, turned.flats, strict=True):
+        assert np.abs(one.points - other.points).max() < 1e-2
