@@ -148,8 +148,11 @@ class HeldSolver:
     found: Floats
 
     @classmethod
-    def of(cls, band: PlaneBand, lower: Floats, grain: Floats) -> HeldSolver:
-        """Prepare the matrix with this ``lower`` band; ``grain`` (p,) is to point up."""
+    def of(cls, band: PlaneBand, lower: Floats, grain: Floats, exact: bool = False) -> HeldSolver:
+        """Prepare the matrix with this ``lower`` band; ``grain`` (p,) is to point up.
+
+        Where it has no least the matrix is changed, unless it is to be ``exact``.
+        """
         top, bottom = int(grain.argmax()), int(grain.argmin())
         pins = [2 * top, 2 * top + 1, 2 * bottom]
         pin = float(np.abs(lower[band.diagonal]).mean())
@@ -158,7 +161,7 @@ class HeldSolver:
         rows[0, ::2] = rows[1, 1::2] = 1.0 / len(grain)
         rows[2, ::2] = grain / np.abs(grain).sum()
         rows[[3, 4, 5], pins] = 1.0
-        solve = band.factor(lower)
+        solve = band.factor(lower, exact)
         found = solve(rows.T) * np.repeat([1.0, -pin], 3)
         inverse = np.linalg.inv(rows @ found + np.diag(np.repeat([0.0, 1.0], 3)))
         return cls(solve, rows, found @ inverse)
@@ -245,10 +248,10 @@ class FlatProblem:
             panel.band.lower(blocks[rows]) for panel, rows in zip(self.panels, self.triangles, strict=True)
         ]
 
-    def solvers(self, lowers: list[Floats]) -> list[HeldSolver]:
+    def solvers(self, lowers: list[Floats], exact: bool = False) -> list[HeldSolver]:
         """Return a solver of each panel's matrix with the lower band of it, which is overwritten."""
         return [
-            HeldSolver.of(panel.band, lower, panel.grain)
+            HeldSolver.of(panel.band, lower, panel.grain, exact)
             for panel, lower in zip(self.panels, lowers, strict=True)
         ]
 

@@ -23,6 +23,9 @@ SPACINGS = (5.0, 9.0)
 
 UP = (0.0, 0.0, 1.0)
 
+_LEVEL = 0.2
+"""A panel whose slope upward is in the mean less than this lies level [1]. Source: ours."""
+
 
 @dataclass(frozen=True, eq=False)
 class PanelSeed:
@@ -55,7 +58,7 @@ class Panel:
     """A panel of p points that ride on the n vertices of a body.
 
     ``mix`` (p, n): their shares, each row's sum 1; ``faces`` (m, 3); ``sides`` in order round it. The piece
-    is turned so that the sum of its points times ``grain`` (p,) [mm] points up. ``start`` (p, 2) [mm] is a
+    is turned so that the sum of its points times ``grain`` (p,) points up. ``start`` (p, 2) [mm] is a
     first guess of the flat piece. ``covers`` [mm^2] is the area of the skin within its outline.
     """
 
@@ -198,7 +201,7 @@ def _even_panel(
 ) -> tuple[Panel, list[tuple[int, bool]]]:
     """Return a panel of even points, and the piece of border that each of its sides is on."""
     skin = net.cut.vertices[region.source]
-    chart = _chart(skin, region.faces, _directions(skin, region.faces, up, seed.turn))
+    chart = _chart(skin, region.faces, up, seed.turn)
     outline = _outline(region, samples, chart)
     ring = outline.chart[: outline.ring]
     inner = grid_within(ring, outline.chart[outline.ring :], spacing)
@@ -219,9 +222,9 @@ def _even_panel(
     entries = (shares[former].ravel(), (rows, columns))
     mix = sparse.csr_array(sparse.coo_array(entries, (len(former), len(net.cut.vertices)))) @ net.cut.mix
     places = np.asarray(mix @ net.cut.skin.vertices)
-    grain = _pull(places, faces, _directions(places, faces, up, seed.turn))
     sides, keys = _sides(faces, former, outline)
     start = points[former]
+    grain = _grain(places, faces, start, up, seed.turn)
     return Panel(seed.name, seed.cloth, mix, faces, sides, grain, start, region.area), keys
 
 
@@ -254,27 +257,32 @@ def _sides(
     return named, [outline.paths[path][0] for path, _ in order]
 
 
-def _directions(places: Points, faces: Faces, up: Points, turn: float) -> Points:
-    """Return the direction of the grain line in each triangle, (m, 3), shorter where it lies level."""
-    normal = unit(area_vectors(places, faces))
+def _grain(places: Points, faces: Faces, flat: Floats, up: Points, turn: float) -> Floats:
+    """Return shares of points, (p,), whose sum of places laid ``flat`` (p, 2) is the way of the grain line.
+
+    It runs ``up`` on the body; on a panel that lies level, as a gusset, along its greatest length.
+    """
+    vectors = area_vectors(places, faces)
+    normal = unit(vectors)
     along = up - (normal @ up)[:, None] * normal
     angle = np.radians(turn)
-    return np.asarray(np.cos(angle) * along + np.sin(angle) * np.cross(normal, along))
-
-
-def _pull(places: Points, faces: Faces, directions: Points) -> Floats:
-    """Return shares of points, (p,) [mm], whose sum is the mean direction wherever the points are laid."""
+    along = np.cos(angle) * along + np.sin(angle) * np.cross(normal, along)
     corners = places[faces]
-    normal = unit(area_vectors(places, faces))
     opposite = np.roll(corners, -2, axis=1) - np.roll(corners, -1, axis=1)
     slopes = np.cross(normal[:, None], opposite)  # twice the area times the slopes of the hat functions
-    value = 0.5 * np.einsum("mkc,mc->mk", slopes, directions)
-    return np.bincount(faces.ravel(), value.ravel(), len(places)).astype(np.float64, copy=False)
+    pull = np.bincount(faces.ravel(), 0.5 * np.einsum("mkc,mc->mk", slopes, along).ravel(), len(places))
+    total = pull @ flat
+    if np.hypot(*total) > _LEVEL * np.linalg.norm(vectors, axis=1).sum():
+        return np.asarray(pull, dtype=np.float64)
+    off = flat - flat.mean(axis=0)
+    longest = np.linalg.eigh(off.T @ off)[1][:, 1]
+    x, y = longest * np.copysign(1.0, longest @ total)
+    return np.asarray(off @ [x * np.cos(angle) - y * np.sin(angle), x * np.sin(angle) + y * np.cos(angle)])
 
 
-def _chart(places: Points, faces: Faces, directions: Points) -> Floats:
+def _chart(places: Points, faces: Faces, up: Points, turn: float) -> Floats:
     """Return the skin of a panel roughly laid flat, its grain line upward, (v, 2) [mm]."""
     slopes = triangle_slopes(places, faces)
     chart = rigid_map(faces, slopes, conformal_map(places, faces, slopes))
-    x, y = _pull(places, faces, directions) @ chart
+    x, y = _grain(places, faces, chart, up, turn) @ chart
     return np.asarray(chart @ np.array([[y, x], [-x, y]]) / np.hypot(x, y))

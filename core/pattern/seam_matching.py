@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from types import MappingProxyType
 
 import numpy as np
 from scipy import sparse
-from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg import cho_factor, cho_solve, lu_factor, lu_solve
 
 from core.blas_threads import one_blas_thread
 from core.geometry.mesh import Floats, Indices, Points
-from core.pattern.cloth_energy import ClothLike
+from core.mechanics.banded_matrix import Solve
+from core.pattern.cloth_energy import ClothLike, ClothState
 from core.pattern.flattening import FlatPanel, FlatProblem, HeldSolver
 from core.pattern.panel import Panel
 
@@ -30,6 +31,12 @@ _NEARLY = 0.02
 
 _GAIN = 0.2
 """Matrices serve again while each step is less than this part of the one before [1]."""
+
+_DAMPING = 0.02
+"""Part of the mean diagonal that is added where tensions bend the pieces too strongly [1]. Source: ours."""
+
+_NEAR = 0.5
+"""After a step of less than this the answer is near [mm]."""
 
 _LONGEST_STEP = 8.0
 """No point goes further in one turn [mm]."""
@@ -154,14 +161,17 @@ def match(
     ease. A ``former`` answer for the same panels and seams saves turns.
     """
     problem = FlatProblem.of(panels, places, cloths)
-    stretches = _Stretches.of(problem, seams)
     with one_blas_thread():
-        if former is None:
-            flat, tensions = problem.minimum(problem.joined(None)), np.zeros(stretches.count)
+        if former is None or not seams:
+            flat = problem.minimum(problem.joined(None if former is None else _worn(former.flats)))
+            tensions = np.zeros(sum(int(seam.stretch[-1]) + 1 for seam in seams))
         else:
             flat, tensions = problem.joined(_worn(former.flats)), former.tensions
-        flat, tensions = _together(problem, stretches, flat, tensions)
-    off = stretches.misfits(flat)
+        off = tensions
+        if seams:
+            stretches = _Stretches.of(problem, seams)
+            flat, tensions = _together(problem, stretches, flat, tensions)
+            off = stretches.misfits(flat)
     return Matched(problem.results(flat), tuple(seams), tensions, problem, off)
 
 
@@ -218,12 +228,18 @@ class _Stretches:
         entries = (value.ravel(), (at.ravel(), np.tile(self.row, 4)))
         return sparse.csc_array(sparse.coo_array(entries, (2 * len(flat), self.count)))
 
-    def add_bending(self, problem: FlatProblem, lowers: list[Floats], flat: Floats, tensions: Floats) -> None:
-        """Add to the matrices of all panels what ``tensions`` (count,) in turning steps add."""
+    def add_bending(
+        self, problem: FlatProblem, lowers: list[Floats], flat: Floats, tensions: Floats, steady: bool
+    ) -> None:
+        """Add to the matrices of all panels what ``tensions`` (count,) in turning steps add.
+
+        If it is to be ``steady``, only what keeps steps straight, and some of the diagonal.
+        """
         way, length = self.steps(flat)
         bend = np.eye(2) - way[:, :, None] * way[:, None]
         bend *= self.shrink[:, :, None] * self.shrink[:, None]
-        bend *= (tensions[self.row] * self.sign / length)[:, None, None]
+        force = tensions[self.row] * self.sign / length
+        bend *= (np.maximum(force, 0.0) if steady else force)[:, None, None]
         blocks = np.concatenate(
             [np.concatenate([bend, -bend], axis=2), np.concatenate([-bend, bend], axis=2)], axis=1
         )
@@ -236,6 +252,8 @@ class _Stretches:
             below = row >= column
             at = column[below] * (band.reach + 1) + row[below] - column[below]
             np.add.at(lower, at, blocks[own][below])
+            diagonal = problem.panels[number].band.diagonal
+            lower[diagonal] += _DAMPING * steady * lower[diagonal].mean()
 
 
 def _together(
@@ -245,19 +263,19 @@ def _together(
     system, before = None, np.inf
     for _ in range(_MOST_TURNS):
         state = problem.state(flat)
-        turned = problem.turned_slopes(state)
-        slopes = stretches.slopes(flat)
+        cloth = state, problem.turned_slopes(state)
+        pull = problem.slope(*cloth) + (stretches.slopes(flat) @ tensions).reshape(-1, 2)
+        off = stretches.misfits(flat)
         new = system is None
         if system is None:
-            lowers = problem.lowers(problem.blocks(state, turned))
-            stretches.add_bending(problem, lowers, flat, tensions)
-            system = _System.of(problem, lowers, slopes)
-        pull = problem.slope(state, turned) + (slopes @ tensions).reshape(-1, 2)
-        off = stretches.misfits(flat)
+            system = _System.at(problem, stretches, cloth, flat, tensions, before < _NEAR)
         step, change = system.step(pull, flat, off)
+        if new and before < _NEAR and np.abs(step).max() > before:  # there is no least so near
+            system = _System.at(problem, stretches, cloth, flat, tensions, False)
+            step, change = system.step(pull, flat, off)
         size = float(np.abs(step).max())
-        flat = flat + min(1.0, _LONGEST_STEP / max(size, 1e-12)) * step
-        tensions = tensions + change
+        share = min(1.0, _LONGEST_STEP / max(size, 1e-12))
+        flat, tensions = flat + share * step, tensions + share * change
         if size < (_NEARLY if new else TOLERANCE):
             break
         system, before = (system, size) if size < _GAIN * before else (None, size)
@@ -269,7 +287,7 @@ class _System:
     """The matrices of all panels, held, and what their stretches make of them.
 
     ``slopes`` are each panel's of the stretches ``columns`` that it has, ``yields`` how its places give way
-    to their tensions; ``factor`` (Cholesky) tells tensions from lengths.
+    to their tensions; ``tighten`` makes tensions of differences of length.
     """
 
     points: tuple[slice, ...]
@@ -277,12 +295,38 @@ class _System:
     columns: list[Indices]
     slopes: list[Floats]
     yields: list[Floats]
-    factor: tuple[Floats, bool]
+    tighten: Solve
 
     @classmethod
-    def of(cls, problem: FlatProblem, lowers: list[Floats], slopes: sparse.csc_array) -> _System:
-        """Factor the matrices with the lower bands ``lowers``; ``slopes`` (2 N, c)."""
-        solvers = problem.solvers(lowers)
+    def at(
+        cls,
+        problem: FlatProblem,
+        stretches: _Stretches,
+        cloth: tuple[ClothState, Floats],
+        flat: Floats,
+        tensions: Floats,
+        near: bool,
+    ) -> _System:
+        """Return the system at ``flat`` (N, 2) under ``tensions`` (c,).
+
+        The matrix of a panel alone need not be positive definite, as lengths that are held keep it from
+        giving way. ``near`` the answer it is taken as it is, farther away only if there is a least.
+        """
+        slopes, blocks = stretches.slopes(flat), problem.blocks(*cloth)
+        lowers = problem.lowers(blocks)
+        stretches.add_bending(problem, lowers, flat, tensions, steady=False)
+        try:
+            return cls._of(problem, lowers, slopes, near)
+        except (np.linalg.LinAlgError, FloatingPointError):
+            lowers = problem.lowers(blocks)
+            stretches.add_bending(problem, lowers, flat, tensions, steady=True)
+            return cls._of(problem, lowers, slopes, near)
+
+    @classmethod
+    def _of(
+        cls, problem: FlatProblem, lowers: list[Floats], slopes: sparse.csc_array, exact: bool
+    ) -> _System:
+        solvers = problem.solvers(lowers, exact)
         matrix = np.zeros((slopes.shape[1],) * 2)
         columns, parts, yields = [], [], []
         rows = sparse.csr_array(slopes)
@@ -295,7 +339,8 @@ class _System:
             columns.append(which)
             parts.append(part)
             yields.append(given)
-        return cls(problem.points, solvers, columns, parts, yields, cho_factor(matrix))
+        solve = partial(lu_solve, lu_factor(matrix)) if exact else partial(cho_solve, cho_factor(matrix))
+        return cls(problem.points, solvers, columns, parts, yields, solve)
 
     def step(self, pull: Floats, flat: Floats, off: Floats) -> tuple[Floats, Floats]:
         """Return the step (N, 2) and the change of tensions (c,) that end ``pull`` and ``off`` (c,)."""
@@ -305,7 +350,7 @@ class _System:
         wanted = off.copy()
         for which, part, given in zip(self.columns, self.slopes, free, strict=True):
             wanted[which] -= part.T @ given.ravel()
-        change = np.asarray(cho_solve(self.factor, wanted))
+        change = np.asarray(self.tighten(wanted))
         step = [
             -given - (yields @ change[which]).reshape(-1, 2)
             for given, yields, which in zip(free, self.yields, self.columns, strict=True)
