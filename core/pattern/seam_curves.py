@@ -10,8 +10,8 @@ import numpy as np
 
 from core.garment.curve_smoothing import smooth
 from core.geometry.closest_point import centroid_tree, nearest_faces
-from core.geometry.geodesic import SurfacePaths
-from core.geometry.mesh import Mesh, Points, submesh
+from core.geometry.geodesic import shortest_path
+from core.geometry.mesh import Points
 from core.geometry.plane_sections import arc_length, interpolate, resample
 from core.pattern.block import RING, ROOT, Block, Seam
 from core.pattern.places import BodyPlaces
@@ -20,7 +20,6 @@ STEP = 3.0
 """Distance between the places of a curve [mm]."""
 
 _ROUNDING = 6  # passes of smoothing that round a curve at the places that it goes through
-_MARGIN = 70.0  # skin above and below all that a block is drawn on [mm]
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,12 +37,11 @@ class SeamCurve:
 
 
 class SeamDrawing:
-    """Draws the seams of blocks on one body; the ways over its skin are prepared once."""
+    """Draws the seams of blocks on one body."""
 
     def __init__(self, places: BodyPlaces) -> None:
         self.places = places
         self._tree = centroid_tree(places.skin)
-        self._paths: tuple[tuple[float, float], SurfacePaths] | None = None
 
     def levels(self, block: Block) -> Mapping[str, float]:
         """Return the heights of the levels of a block [mm]. Raises PatternError."""
@@ -85,27 +83,11 @@ class SeamDrawing:
 
     def _way(self, stops: list[Points]) -> Points:
         """Return the shortest ways over the skin between places, rounded where they meet."""
-        paths = self._surface_paths(np.array(stops))
-        pieces = [paths.path(start, end) for start, end in pairwise(stops)]
+        pieces = [shortest_path(self.places.skin, start, end) for start, end in pairwise(stops)]
         whole = np.concatenate([pieces[0], *(piece[1:] for piece in pieces[1:])])
         return smooth(resample(whole, STEP), _ROUNDING, closed=False)
-
-    def _surface_paths(self, stops: Points) -> SurfacePaths:
-        """Return the ways over the skin around places; what was prepared serves if it reaches as far."""
-        low, high = float(stops[:, 2].min()) - _MARGIN, float(stops[:, 2].max()) + _MARGIN
-        if self._paths is None or low < self._paths[0][0] or high > self._paths[0][1]:
-            if self._paths is not None:
-                low, high = min(low, self._paths[0][0]), max(high, self._paths[0][1])
-            self._paths = (low, high), SurfacePaths(_between(self.places.skin, low, high))
-        return self._paths[1]
 
     def _laid(self, points: Points) -> Points:
         """Return a curve evenly divided, on the skin; its ends stay."""
         even = resample(points, STEP)
         return nearest_faces(self.places.skin, even, self._tree)[1]
-
-
-def _between(skin: Mesh, low: float, high: float) -> Mesh:
-    """Return the skin between two heights [mm]."""
-    inside = (skin.vertices[:, 2] > low) & (skin.vertices[:, 2] < high)
-    return submesh(skin, np.asarray(inside[skin.faces].all(axis=1)))

@@ -130,6 +130,8 @@ class Matched:
     @cached_property
     def fits(self) -> tuple[SeamFit, ...]:
         """Return how each seam fits."""
+        if not self.seams:
+            return ()
         ends = np.cumsum([seam.stretch[-1] + 1 for seam in self.seams])[:-1]
         parts = zip(self.seams, np.split(self._misfits, ends), np.split(self.tensions, ends), strict=True)
         fits = []

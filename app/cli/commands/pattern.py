@@ -6,6 +6,7 @@ import json
 import os
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator
+from dataclasses import replace
 from datetime import date
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ from app.cli.options import add_lines, add_scan
 from app.cli.output import DONE, finish, table_lines
 from app.cli.solved_design import SolvedDesign, solve_design
 from core import __version__
+from core.document.lower_trunk import LowerTrunk
 from core.errors import PatternError
 from core.export.pattern_csv import write_pieces, write_seams
 from core.export.pattern_data import pattern_values, piece_values, seam_values
@@ -72,7 +74,10 @@ def run(options: Namespace) -> int:
             Message("Enter busk pattern SCAN --block NAME; busk pattern --list shows the blocks."),
         )
     block = find_block(options.block)
-    solved = solve_design(design_of(options), options.line or [], options.elastic or [])
+    design = design_of(options)
+    if block.needs_lower_trunk:
+        design = replace(design, lower=design.lower or LowerTrunk())
+    solved = solve_design(design, options.line or [], options.elastic or [], bare=True)
     garment = cut_garment(SeamDrawing(BodyPlaces.of(solved.solution.stages)), block)
     pattern = garment.flat(_worn_skin(solved), {cloth.name: cloth for cloth in built_in()})
     written = _write(pattern, solved, options)
