@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -134,6 +134,10 @@ def flatten_all(
         return problem.results(problem.minimum(problem.joined(starts)))
 
 
+Factor = Callable[[Floats], Solve | None]
+"""What makes a solver of a lower band, if there is one."""
+
+
 @dataclass(frozen=True, eq=False)
 class HeldSolver:
     """Solves a panel's matrix while its mean place and its grain line are held.
@@ -148,23 +152,32 @@ class HeldSolver:
     found: Floats
 
     @classmethod
-    def of(cls, band: PlaneBand, lower: Floats, grain: Floats, exact: bool = False) -> HeldSolver:
-        """Prepare the matrix with this ``lower`` band; ``grain`` (p,) is to point up.
+    def of(cls, band: PlaneBand, lower: Floats, grain: Floats, factor: Factor) -> HeldSolver | None:
+        """Prepare the matrix with this ``lower`` band, which is overwritten; ``grain`` (p,) is to point up.
 
-        Where it has no least the matrix is changed, unless it is to be ``exact``.
+        None where ``factor`` finds no solver of it.
         """
         top, bottom = int(grain.argmax()), int(grain.argmin())
         pins = [2 * top, 2 * top + 1, 2 * bottom]
         pin = float(np.abs(lower[band.diagonal]).mean())
         lower[band.diagonal[pins]] += pin
+        solve = factor(lower)
+        if solve is None:
+            return None
         rows = np.zeros((6, 2 * len(grain)))
         rows[0, ::2] = rows[1, 1::2] = 1.0 / len(grain)
         rows[2, ::2] = grain / np.abs(grain).sum()
         rows[[3, 4, 5], pins] = 1.0
-        solve = band.factor(lower, exact)
         found = solve(rows.T) * np.repeat([1.0, -pin], 3)
         inverse = np.linalg.inv(rows @ found + np.diag(np.repeat([0.0, 1.0], 3)))
         return cls(solve, rows, found @ inverse)
+
+    @classmethod
+    def raised(cls, band: PlaneBand, lower: Floats, grain: Floats) -> HeldSolver:
+        """Prepare the same with a diagonal that is raised until the matrix is positive definite."""
+        solver = cls.of(band, lower, grain, band.factor)
+        assert solver is not None
+        return solver
 
     def __call__(self, right: Floats, off: Floats | None = None) -> Floats:
         """Return what the matrix makes ``right`` (p, 2) or (2 p, k) of, with the conditions of ``off``.
@@ -248,13 +261,6 @@ class FlatProblem:
             panel.band.lower(blocks[rows]) for panel, rows in zip(self.panels, self.triangles, strict=True)
         ]
 
-    def solvers(self, lowers: list[Floats], exact: bool = False) -> list[HeldSolver]:
-        """Return a solver of each panel's matrix with the lower band of it, which is overwritten."""
-        return [
-            HeldSolver.of(panel.band, lower, panel.grain, exact)
-            for panel, lower in zip(self.panels, lowers, strict=True)
-        ]
-
     def minimum(self, flat: Floats) -> Floats:
         """Return the places of the least work near ``flat`` (N, 2) [mm], by Newton steps."""
         state, solvers, before = self.state(flat), None, np.inf
@@ -263,7 +269,11 @@ class FlatProblem:
             turned = self.turned_slopes(state)
             new = solvers is None
             if solvers is None:
-                solvers = self.solvers(self.lowers(self.blocks(state, turned)))
+                lowers = self.lowers(self.blocks(state, turned))
+                solvers = [
+                    HeldSolver.raised(panel.band, lower, panel.grain)
+                    for panel, lower in zip(self.panels, lowers, strict=True)
+                ]
             slope = self.slope(state, turned)
             step = -np.concatenate(
                 [solver(slope[rows], flat[rows]) for solver, rows in zip(solvers, self.points, strict=True)]

@@ -85,21 +85,15 @@ class PlaneBand:
         """Return where the diagonal lies in the lower band, by coordinate."""
         return np.asarray(self.band.place * (self.band.reach + 1))
 
-    def factor(self, lower: Floats, exact: bool = False) -> Solve:
-        """Return a solver of the matrix with this ``lower`` band.
+    def factor(self, lower: Floats) -> Solve:
+        """Return a solver of the matrix with this ``lower`` band, its diagonal raised until there is one.
 
-        Where it is not positive definite its diagonal is raised until it is, unless it is to be ``exact``.
-        Raises FloatingPointError if the matrix is not finite, or is singular.
+        Raises FloatingPointError if the matrix is not finite.
         """
         raised = 1e-7 * float(np.abs(lower[self.diagonal]).mean())
         if not np.isfinite(raised):
             raise FloatingPointError("a matrix that is not finite")
         while (solve := self.band.cholesky(lower)) is None:
-            if exact:
-                solve = self.band.lu(self.band.spread(lower))
-                if solve is None:
-                    raise FloatingPointError("a singular matrix")
-                return solve
             lower[self.diagonal] += raised
             raised *= 30.0
         return solve

@@ -9,12 +9,12 @@ from types import MappingProxyType
 
 import numpy as np
 from scipy import sparse
-from scipy.linalg import cho_factor, cho_solve, lu_factor, lu_solve
+from scipy.linalg import lu_factor, lu_solve
 
 from core.blas_threads import one_blas_thread
 from core.geometry.mesh import Floats, Indices, Points
 from core.mechanics.banded_matrix import Solve
-from core.pattern.cloth_energy import ClothLike, ClothState
+from core.pattern.cloth_energy import ClothLike
 from core.pattern.flattening import FlatPanel, FlatProblem, HeldSolver
 from core.pattern.panel import Panel
 
@@ -32,16 +32,13 @@ _NEARLY = 0.02
 _GAIN = 0.2
 """Matrices serve again while each step is less than this part of the one before [1]."""
 
-_DAMPING = 0.02
-"""Part of the mean diagonal that is added where tensions bend the pieces too strongly [1]. Source: ours."""
-
-_NEAR = 0.5
-"""After a step of less than this the answer is near [mm]."""
+_FIRMER = (0.0, 1.0, 4.0, 16.0)
+"""How stiff sides are made along themselves where the matrix has no least [stiffness]. Source: ours."""
 
 _LONGEST_STEP = 8.0
 """No point goes further in one turn [mm]."""
 
-_MOST_TURNS = 25
+_MOST_TURNS = 40
 
 
 @dataclass(frozen=True, eq=False)
@@ -230,32 +227,27 @@ class _Stretches:
         entries = (value.ravel(), (at.ravel(), np.tile(self.row, 4)))
         return sparse.csc_array(sparse.coo_array(entries, (2 * len(flat), self.count)))
 
-    def add_bending(
-        self, problem: FlatProblem, lowers: list[Floats], flat: Floats, tensions: Floats, steady: bool
+    def add(
+        self, problem: FlatProblem, panel: int, lower: Floats, flat: Floats, tensions: Floats, along: float
     ) -> None:
-        """Add to the matrices of all panels what ``tensions`` (count,) in turning steps add.
+        """Add to the lower band of a panel what ``tensions`` (count,) add as its steps turn.
 
-        If it is to be ``steady``, only what keeps steps straight, and some of the diagonal.
+        It also makes steps ``along`` times as stiff as they are at a stiffness of 1.
         """
-        way, length = self.steps(flat)
-        bend = np.eye(2) - way[:, :, None] * way[:, None]
-        bend *= self.shrink[:, :, None] * self.shrink[:, None]
-        force = tensions[self.row] * self.sign / length
-        bend *= (np.maximum(force, 0.0) if steady else force)[:, None, None]
-        blocks = np.concatenate(
-            [np.concatenate([bend, -bend], axis=2), np.concatenate([-bend, bend], axis=2)], axis=1
-        )
-        for number, (rows, lower) in enumerate(zip(problem.points, lowers, strict=True)):
-            own = self.panel == number
-            ends = 2 * np.stack([self.start[own], self.end[own]], axis=1) - 2 * rows.start
-            band = problem.panels[number].band.band
-            place = band.place[(ends[:, :, None] + np.arange(2)).reshape(-1, 4)]
-            row, column = np.broadcast_arrays(place[:, :, None], place[:, None, :])
-            below = row >= column
-            at = column[below] * (band.reach + 1) + row[below] - column[below]
-            np.add.at(lower, at, blocks[own][below])
-            diagonal = problem.panels[number].band.diagonal
-            lower[diagonal] += _DAMPING * steady * lower[diagonal].mean()
+        own = self.panel == panel
+        way, length = (each[own] for each in self.steps(flat))
+        ahead = way[:, :, None] * way[:, None]
+        force = (tensions[self.row] * self.sign)[own] / length
+        part = force[:, None, None] * (np.eye(2) - ahead) + along * ahead
+        part *= self.shrink[own, :, None] * self.shrink[own, None]
+        both = [np.concatenate([part, -part], axis=2), np.concatenate([-part, part], axis=2)]
+        ends = np.stack([self.start[own], self.end[own]], axis=1) - problem.points[panel].start
+        band = problem.panels[panel].band.band
+        place = band.place[(2 * ends[:, :, None] + np.arange(2)).reshape(-1, 4)]
+        row, column = np.broadcast_arrays(place[:, :, None], place[:, None, :])
+        below = row >= column
+        at = column[below] * (band.reach + 1) + row[below] - column[below]
+        np.add.at(lower, at, np.concatenate(both, axis=1)[below])
 
 
 def _together(
@@ -270,11 +262,8 @@ def _together(
         off = stretches.misfits(flat)
         new = system is None
         if system is None:
-            system = _System.at(problem, stretches, cloth, flat, tensions, before < _NEAR)
+            system = _System.at(problem, stretches, problem.blocks(*cloth), flat, tensions)
         step, change = system.step(pull, flat, off)
-        if new and before < _NEAR and np.abs(step).max() > before:  # there is no least so near
-            system = _System.at(problem, stretches, cloth, flat, tensions, False)
-            step, change = system.step(pull, flat, off)
         size = float(np.abs(step).max())
         share = min(1.0, _LONGEST_STEP / max(size, 1e-12))
         flat, tensions = flat + share * step, tensions + share * change
@@ -282,6 +271,24 @@ def _together(
             break
         system, before = (system, size) if size < _GAIN * before else (None, size)
     return flat, tensions
+
+
+def _solver(
+    problem: FlatProblem, stretches: _Stretches, panel: int, lower: Floats, flat: Floats, tensions: Floats
+) -> HeldSolver:
+    """Return a solver of a panel's matrix whose ``lower`` band is that of the cloth alone.
+
+    It need not be positive definite, as lengths that are held keep the piece from giving way. Then its sides
+    are made stiffer along themselves, which changes little else.
+    """
+    band, grain = problem.panels[panel].band, problem.panels[panel].grain
+    for along in _FIRMER:
+        whole = lower.copy()
+        stretches.add(problem, panel, whole, flat, tensions, along)
+        solver = HeldSolver.of(band, whole, grain, band.band.cholesky)
+        if solver is not None:
+            return solver
+    return HeldSolver.raised(band, whole, grain)
 
 
 @dataclass(frozen=True, eq=False)
@@ -304,36 +311,20 @@ class _System:
         cls,
         problem: FlatProblem,
         stretches: _Stretches,
-        cloth: tuple[ClothState, Floats],
+        blocks: Floats,
         flat: Floats,
         tensions: Floats,
-        near: bool,
     ) -> _System:
-        """Return the system at ``flat`` (N, 2) under ``tensions`` (c,).
-
-        The matrix of a panel alone need not be positive definite, as lengths that are held keep it from
-        giving way. ``near`` the answer it is taken as it is, farther away only if there is a least.
-        """
-        slopes, blocks = stretches.slopes(flat), problem.blocks(*cloth)
-        lowers = problem.lowers(blocks)
-        stretches.add_bending(problem, lowers, flat, tensions, steady=False)
-        try:
-            return cls._of(problem, lowers, slopes, near)
-        except (np.linalg.LinAlgError, FloatingPointError):
-            lowers = problem.lowers(blocks)
-            stretches.add_bending(problem, lowers, flat, tensions, steady=True)
-            return cls._of(problem, lowers, slopes, near)
-
-    @classmethod
-    def _of(
-        cls, problem: FlatProblem, lowers: list[Floats], slopes: sparse.csc_array, exact: bool
-    ) -> _System:
-        solvers = problem.solvers(lowers, exact)
+        """Return the system at ``flat`` (N, 2) under ``tensions`` (c,); ``blocks`` are those of the cloth."""
+        slopes = sparse.csr_array(stretches.slopes(flat))
+        solvers = [
+            _solver(problem, stretches, panel, lower, flat, tensions)
+            for panel, lower in enumerate(problem.lowers(blocks))
+        ]
         matrix = np.zeros((slopes.shape[1],) * 2)
         columns, parts, yields = [], [], []
-        rows = sparse.csr_array(slopes)
         for points, solver in zip(problem.points, solvers, strict=True):
-            own = rows[2 * points.start : 2 * points.stop]
+            own = slopes[2 * points.start : 2 * points.stop]
             which = np.unique(own.indices).astype(np.int64)
             part = own[:, which].toarray()
             given = solver(part)
@@ -341,8 +332,8 @@ class _System:
             columns.append(which)
             parts.append(part)
             yields.append(given)
-        solve = partial(lu_solve, lu_factor(matrix)) if exact else partial(cho_solve, cho_factor(matrix))
-        return cls(problem.points, solvers, columns, parts, yields, solve)
+        tighten = partial(lu_solve, lu_factor(matrix))
+        return cls(problem.points, solvers, columns, parts, yields, tighten)
 
     def step(self, pull: Floats, flat: Floats, off: Floats) -> tuple[Floats, Floats]:
         """Return the step (N, 2) and the change of tensions (c,) that end ``pull`` and ``off`` (c,)."""

@@ -44,6 +44,16 @@ def test_the_grain_line_is_up_on_the_body_or_turned_from_it():
         np.testing.assert_allclose(placed, expected - expected.mean(axis=0), atol=0.1)
 
 
+def test_the_grain_line_of_a_panel_that_lies_level_is_its_length():
+    place = lambda u, v: (u, v, -0.002 * v**2)  # noqa: E731 (as a gusset, it falls to both ends)
+    mesh, panel, expected = developable(place)
+    piece = flatten(panel, panel.places(mesh.vertices), EVEN)
+    off = expected - expected.mean(axis=0)
+    longest = np.linalg.eigh(off.T @ off)[1][:, 1]
+    along = (piece.points - piece.points.mean(axis=0))[:, 1]
+    assert abs(np.corrcoef(along, off @ longest)[0, 1]) > 0.99
+
+
 def exact_cap(angle, poisson, radius=70.0, count=2000):
     """Radius of the edge [mm] and stretch at the pole of the flat cap of least work, by its 1D equation."""
     phi = np.linspace(0.0, np.radians(angle), count + 1)

@@ -110,3 +110,21 @@ def test_what_matching_costs_is_seen_in_the_strain(panels):
     matched = match(panels, places_of(panels), (STIFF, EVEN), seams_of(panels))
     alone, together = (strain_summary(pieces[1]) for pieces in (matched.alone, matched.flats))
     assert together.mean > alone.mean
+
+
+def test_without_seams_pieces_lie_as_flattened_alone(panels):
+    matched = match(panels, places_of(panels), (EVEN, LACE), ())
+    assert matched.fits == ()
+    for together, alone in zip(matched.flats, matched.alone, strict=True):
+        np.testing.assert_allclose(together.points, alone.points, atol=1e-3)
+
+
+def test_sides_that_differ_by_a_tenth_are_made_to_fit(panels):
+    # So strongly strained a piece gives way along its own sides: only its seams hold it.
+    seams = [replace(seam, ratio=ratio) for seam, ratio in zip(seams_of(panels), (0.88, 1.0), strict=True)]
+    matched = match(panels, places_of(panels), (EVEN, EVEN), seams)
+    assert max(fit.off for fit in matched.fits) < 0.01
+    assert abs(matched.fits[0].misfit) > 0.1
+    again = match(panels, places_of(panels), (EVEN, EVEN), seams, matched)
+    for one, two in zip(matched.flats, again.flats, strict=True):
+        np.testing.assert_allclose(one.points, two.points, atol=0.01)
