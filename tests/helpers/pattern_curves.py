@@ -45,65 +45,74 @@ def _turn(p: np.ndarray, q: np.ndarray) -> np.ndarray:
     return p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]
 
 
+class _Plan:
+    """Angles [degrees] and heights [mm] of the seams of one side; the other is its mirror image."""
+
+    def __init__(self, landmarks: Landmarks, centre: np.ndarray) -> None:
+        inner, outer, self.apex, lowest, fold = (
+            (np.degrees(np.arctan2(point[0], centre[1] - point[1])), point[2])
+            for name in ("root_inner", "root_outer", "bust_point", "lowest", "fold")
+            for point in [landmarks.position(f"{name}_left")]
+        )
+        low = min(lowest[1], fold[1]) - 6.0
+        self.middle, self.wide = 0.5 * (inner[0] + outer[0]), 2.0 + 0.5 * (outer[0] - inner[0])
+        self.level = self.apex[1] + 5.0
+        self.tall, self.band = self.level - low, low - 30.0
+
+    def root(self, clock: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        turn = np.radians(clock)
+        return self.middle + self.wide * np.sin(turn), self.level + self.tall * np.cos(turn)
+
+    def end(self, clock: float) -> tuple[float, float]:
+        angle, height = self.root(np.array(clock))
+        return float(angle), float(height)
+
+
+def _way(*places: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
+    """A smooth curve through two or three places."""
+    at, known = np.linspace(0.0, 1.0, 61), np.linspace(0.0, 1.0, len(places))
+    return tuple(
+        np.polyval(np.polyfit(known, column, len(places) - 1), at) for column in np.transpose(places)
+    )
+
+
 def bra(mesh: Mesh, landmarks: Landmarks) -> tuple[tuple[SurfaceCurve, ...], tuple[PanelSeed, ...]]:
     """Return curves and panels of a bra: two-part cups, bridge, cradle and wings, nine panels."""
     centre = 0.5 * (
         landmarks.position("front_centre_underbust") + landmarks.position("back_centre_underbust")
     )
-    wrap = Wrap(mesh, (float(centre[0]), float(centre[1])))
-    marks = {
-        name: (np.degrees(np.arctan2(point[0], centre[1] - point[1])), point[2])
-        for name in ("bust_point", "root_inner", "root_outer", "lowest", "fold")
-        for point in [landmarks.position(f"{name}_left")]
-    }
-    low = min(marks["lowest"][1], marks["fold"][1]) - 6.0
-    band, apex = low - 30.0, marks["bust_point"]
-    middle, wide = 0.5 * (marks["root_inner"][0] + marks["root_outer"][0]), 2.0
-    wide += 0.5 * (marks["root_outer"][0] - marks["root_inner"][0])
-    level = apex[1] + 5.0
-
-    def root(clock: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        turn = np.radians(clock)
-        return middle + wide * np.sin(turn), level + (level - low) * np.cos(turn)
-
-    def way(*places: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
-        at = np.linspace(0.0, 2.0, 61)
-        known = np.linspace(0.0, 2.0, len(places))
-        return tuple(
-            np.polyval(np.polyfit(known, column, len(places) - 1), at) for column in np.transpose(places)
-        )
-
-    def ends(clock: float) -> tuple[float, float]:
-        return tuple(float(each) for each in root(np.array(clock)))
-
-    back = band + 45.0
-    outer, seam = ends(60.0), ends(215.0)
-    curves, seeds = [], []
-    around = np.linspace(0.0, 360.0, 301)
-    places = wrap(around, np.full(301, band))
-    places[-1] = places[0]
-    curves.append(SurfaceCurve("band edge", places, is_edge=True))
+    wrap, plan = Wrap(mesh, (float(centre[0]), float(centre[1]))), _Plan(landmarks, centre)
+    band, back, outer, seam, inner = (
+        plan.band,
+        plan.band + 45.0,
+        plan.end(60.0),
+        plan.end(215.0),
+        plan.end(300.0),
+    )
+    side_top = (90.0, outer[1] - 12.0)
+    around = wrap(np.linspace(0.0, 360.0, 301), np.full(301, band))
+    around[-1] = around[0]
+    curves, seeds = [SurfaceCurve("band edge", around, is_edge=True)], []
     for side, sign in (("left", 1.0), ("right", -1.0)):
         for name, (angle, height), edge in (
-            ("wire", root(np.linspace(60.0, 300.0, 121)), False),
-            ("top edge", root(np.linspace(300.0, 420.0, 61)), True),
-            ("cup seam", way(ends(265.0), apex, ends(95.0)), False),
-            ("bridge seam", way(seam, (seam[0] - 4.0, band)), False),
-            ("wing top", way(outer, (90.0, outer[1] - 12.0), (180.0, back)), True),
-            ("side seam", way((90.0, outer[1] - 12.0), (90.0, band)), False),
+            ("wire", plan.root(np.linspace(60.0, 300.0, 121)), False),
+            ("top edge", plan.root(np.linspace(300.0, 420.0, 61)), True),
+            ("cup seam", _way(plan.end(265.0), plan.apex, plan.end(95.0)), False),
+            ("bridge seam", _way(seam, (seam[0] - 4.0, band)), False),
+            ("wing top", _way(outer, side_top, (180.0, back)), True),
+            ("side seam", _way(side_top, (90.0, band)), False),
         ):
             curves.append(SurfaceCurve(f"{name} {side}", wrap(sign * angle, height), is_edge=edge))
-        for name, place, cloth in (
-            ("upper cup", (middle, level + 0.5 * (level - low)), "cup"),
-            ("lower cup", (middle, level - 0.6 * (level - low)), "cup"),
-            ("cradle", (middle, band + 10.0), "sheer"),
-            ("wing", (130.0, band + 15.0), "power net"),
+        for name, angle, height, cloth in (
+            ("upper cup", plan.middle, plan.level + 0.5 * plan.tall, "cup"),
+            ("lower cup", plan.middle, plan.level - 0.6 * plan.tall, "cup"),
+            ("cradle", plan.middle, band + 10.0, "sheer"),
+            ("wing", 130.0, band + 15.0, "power net"),
         ):
-            at = wrap(np.array([sign * place[0]]), np.array([place[1]]))[0]
-            seeds.append(PanelSeed(f"{name} {side}", at, cloth))
-    inner = ends(300.0)
-    top = wrap(*way((-inner[0], inner[1]), (0.0, inner[1] - 8.0), inner))
+            place = wrap(np.array([sign * angle]), np.array([height]))[0]
+            seeds.append(PanelSeed(f"{name} {side}", place, cloth))
+    top = wrap(*_way((-inner[0], inner[1]), (0.0, inner[1] - 8.0), inner))
     curves.append(SurfaceCurve("bridge top", top, is_edge=True))
-    curves.append(SurfaceCurve("centre back", wrap(*way((180.0, back), (180.0, band))), is_edge=True))
+    curves.append(SurfaceCurve("centre back", wrap(*_way((180.0, back), (180.0, band))), is_edge=True))
     seeds.append(PanelSeed("bridge", wrap(np.array([0.0]), np.array([band + 12.0]))[0], "sheer"))
     return tuple(curves), tuple(seeds)
