@@ -13,6 +13,7 @@ from core.pattern.allowance import cut_piece
 from core.pattern.block import built_in_blocks, find_block
 from core.pattern.cloth import built_in
 from core.pattern.garment import CutGarment, Pattern, cut_garment
+from core.pattern.piece import SAME
 from core.pattern.places import BodyPlaces
 from core.pattern.seam_curves import SeamDrawing
 from core.pipeline.build import Stages
@@ -87,6 +88,11 @@ def test_a_cup_in_one_piece_is_more_than_its_cloth_takes_up(built: Built) -> Non
     assert found.strains["cup left"].within > 1.5 * most
 
 
+def work(found: Pattern) -> float:
+    """The squares of all strains over the pieces, (mm^2)."""
+    return sum(float(((flat.stretch[:, :2] - 1.0) ** 2).sum(axis=1) @ flat.areas) for flat in found.flats)
+
+
 def test_panels_ride_on_the_body_and_start_from_the_pattern_before(built: Built) -> None:
     stages = built("mannequin")
     garment, before = cut(stages, "three-part-cup"), pattern(stages, "three-part-cup")
@@ -96,11 +102,13 @@ def test_panels_ride_on_the_body_and_start_from_the_pattern_before(built: Built)
     moved = rest - np.array([0.0, 6.0, 0.0]) * near[:, None]  # the left breast comes forward
     cold = garment.flat(moved, CLOTHS)
     warm = garment.flat(moved, CLOTHS, before.matched)
+    # Narrow tips have two places of nearly the same work: what is written is solved from the start.
+    assert work(warm) == pytest.approx(work(cold), rel=1e-3)
     for one, other in zip(cold.flats, warm.flats, strict=True):
-        assert np.abs(one.points - other.points).max() < 0.2
+        assert np.abs(one.points - other.points).max() < SAME
     number = [panel.name for panel in garment.panels].index("lower cup left")
     assert cold.flats[number].areas.sum() > 1.01 * before.flats[number].areas.sum()
     turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-    turned = garment.flat(rest @ turn.T + 40.0, CLOTHS, before.matched)
+    turned = garment.flat(rest @ turn.T + 40.0, CLOTHS)
     for one, other in zip(before.flats, turned.flats, strict=True):
-        assert np.abs(one.points - other.points).max() < 1e-2
+        assert np.abs(one.points - other.points).max() < 1e-4, "the same body, turned and shifted"
