@@ -22,7 +22,7 @@ from core.garment.presets import built_in as presets  # noqa: E402
 from core.landmarks.types import ALL_NAMES, SIDES  # noqa: E402
 from core.mechanics.options import CHOICES, RANGES  # noqa: E402
 from core.messages import LandmarkName, SettingName, SideName  # noqa: E402
-from core.pattern.cloth import built_in as cloths  # noqa: E402
+from core.pattern.cloth_library import built_in as cloths  # noqa: E402
 from core.scan.orientation.unit_detection import MILLIMETRES  # noqa: E402
 
 ENGLISH_ONLY = ("app/cli", "app/research")

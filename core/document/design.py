@@ -23,6 +23,7 @@ from core.document.document_limits import (
     check_words,
 )
 from core.document.elastic import TISSUE_LIMITS, TISSUE_STIFFNESS, Elastic, check_elastics
+from core.document.garment_pattern import GarmentPattern
 from core.document.lines import BUST, LOWER, ActiveLine, CustomLine, LineSettings, partner_of
 from core.document.lower_trunk import LOWER_SETTINGS, LowerTrunk, line_group, lower_line_names
 from core.document.printable_name import repeated
@@ -56,7 +57,8 @@ class Design:
     docs/explanation/forces.md). ``customer`` is whom it is for, in whatever words, ``worn_tight_mm`` what
     her sizes take off the under-bust. ``calibration`` names the scan with the garment on that its numbers
     come from, if any. ``cup`` is what both breasts are worn in, if anything. ``lower`` adds the region below
-    the bust, which a scan needs legs for. ``unknown`` keeps what a later version wrote.
+    the bust, which a scan needs legs for. ``pattern`` is what its pieces are cut by, if they are wanted.
+    ``unknown`` keeps what a later version wrote.
     """
 
     scan: ScanSource
@@ -91,6 +93,7 @@ class Design:
     calibration: Calibration | None = None
     cup: Cup | None = None
     lower: LowerTrunk | None = None
+    pattern: GarmentPattern | None = None
     unknown: Mapping[str, Any] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
@@ -242,6 +245,7 @@ class Design:
             own_lines=self.lines_of(LOWER),
             cup=None,
             lower=None,
+            pattern=None,
             tissue="net",
             firm_chest=lower.firmness,
             volume_of="each",
@@ -332,6 +336,7 @@ class Design:
             "customer": "",
             "worn_tight_mm": 0.0,
             "calibration": None,
+            "pattern": None,
         }
         return replace(mine, **neutral) == replace(others, **neutral)
 

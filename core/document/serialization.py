@@ -17,12 +17,12 @@ from core.errors import ProjectError, UserError
 from core.messages import Message
 from core.scan.source import UNEDITED
 
-FORMAT = 6
+FORMAT = 7
 """The newest format that is read: 2 has variants beside the design, 3 elastics, 4 free lines and straps, 5
-edits of the scan, 6 the lower trunk.
+edits of the scan, 6 the lower trunk, 7 pattern pieces.
 """
 
-WITH_VARIANTS, WITH_ELASTICS, WITH_FREE_LINES, WITH_EDITS, WITH_LOWER_TRUNK = 2, 3, 4, 5, 6
+WITH_VARIANTS, WITH_ELASTICS, WITH_FREE_LINES, WITH_EDITS, WITH_LOWER_TRUNK, WITH_PATTERN = 2, 3, 4, 5, 6, 7
 """All else is written as 1."""
 
 _KNOWN = frozenset(field.name for field in fields(Design)) - {"unknown"}
@@ -57,7 +57,7 @@ def to_values(design: Design, written: int = 1) -> dict[str, Any]:
         del values["scan"]["edits"]
     if design.tissue_stiffness == TISSUE_STIFFNESS:
         del values["tissue_stiffness"]
-    for key in ("own_measures", "customer", "worn_tight_mm", "calibration", "cup", "lower"):
+    for key in ("own_measures", "customer", "worn_tight_mm", "calibration", "cup", "lower", "pattern"):
         if not values[key]:
             del values[key]
     return {"format": max(written, _format_of(design)), "length_unit": "mm", **unknown, **values}
@@ -66,6 +66,7 @@ def to_values(design: Design, written: int = 1) -> dict[str, Any]:
 def _format_of(design: Design) -> int:
     """Return the oldest format that holds a design: an older program would drop what it does not know."""
     needed = (
+        (WITH_PATTERN, design.pattern is not None),
         (WITH_LOWER_TRUNK, design.lower is not None or bool(design.lines_of(LOWER))),
         (WITH_EDITS, design.scan.edits != UNEDITED),
         (WITH_FREE_LINES, any(line.free or line.over_shoulder for line in design.own_lines)),

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from core.document.cloth import Cloth, Pair
 from core.errors import PatternError
 from core.files.atomic_write import write_text
 from core.files.table_text import (
@@ -19,7 +20,7 @@ from core.files.table_text import (
     read_table_text,
 )
 from core.messages import Message
-from core.pattern.cloth import Cloth, Pair, cloth_of_stretch, stretch_test
+from core.pattern.cloth_library import cloth_of_stretch, stretch_test
 
 HELP = Message(
     "The table requires the headings 'direction' and 'stretch %' (or '10 cm to cm'), and the rows 'across' "

@@ -8,10 +8,11 @@ from functools import cached_property
 
 import numpy as np
 
+from core.document.block import Block
+from core.document.cloth import Cloth
+from core.document.garment_pattern import ALLOWANCE
 from core.geometry.mesh import Points
 from core.landmarks.types import SIDES
-from core.pattern.block import Block
-from core.pattern.cloth import Cloth
 from core.pattern.flattening import FlatPanel, StrainSummary, strain_summary
 from core.pattern.notches import notched
 from core.pattern.panel import Panel, PanelSeed, cut_panels
@@ -20,9 +21,6 @@ from core.pattern.seam_curves import SeamCurve, SeamDrawing
 from core.pattern.seam_matching import Matched, SeamFit, match, seams_of
 from core.pattern.surface_cut import cut_surface
 from core.pattern.surface_trace import SurfaceCurve
-
-ALLOWANCE = 7.0
-"""The usual seam allowance of underwear [mm]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +57,10 @@ def _seeds(drawing: SeamDrawing, block: Block, curves: Sequence[SeamCurve]) -> l
     levels, drawn = drawing.levels(block), {each.name: each.points for each in curves}
     return [
         PanelSeed(
-            f"{plan.name} {side}".rstrip(), drawing.places.place(plan.seed, side, levels, drawn), plan.cloth
+            f"{plan.name} {side}".rstrip(),
+            drawing.places.place(plan.seed, side, levels, drawn),
+            plan.cloth,
+            plan.turn,
         )
         for plan in block.panels
         for side in (SIDES if plan.each else ("",))

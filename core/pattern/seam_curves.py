@@ -8,12 +8,12 @@ from itertools import pairwise
 
 import numpy as np
 
+from core.document.block import RING, ROOT, Block, Seam
 from core.garment.curve_smoothing import smooth
 from core.geometry.closest_point import centroid_tree, nearest_faces
 from core.geometry.geodesic import shortest_path
 from core.geometry.mesh import Points
 from core.geometry.plane_sections import arc_length, interpolate, resample
-from core.pattern.block import RING, ROOT, Block, Seam
 from core.pattern.places import BodyPlaces
 
 STEP = 3.0
@@ -45,7 +45,7 @@ class SeamDrawing:
 
     def levels(self, block: Block) -> Mapping[str, float]:
         """Return the heights of the levels of a block [mm]. Raises PatternError."""
-        return {name: self.places.height(told) + off for name, (told, off) in block.levels.items()}
+        return {each.name: self.places.height(each.reference) + each.above for each in block.levels}
 
     def curves(self, block: Block) -> tuple[SeamCurve, ...]:
         """Return the curves of a block in its order. Raises PatternError, LineError."""
@@ -71,7 +71,7 @@ class SeamDrawing:
             ends = np.array([first, last]) * along[-1]
             at = np.concatenate([ends[:1], along[(along > ends[0]) & (along < ends[1])], ends[1:]])
             return interpolate(at, along, ring)
-        stops = [self.places.place(word, side, levels, drawn) for word in seam.places]
+        stops = [self.places.place(word, side, levels, drawn) for word in seam.places_of(side)]
         return self._way(stops)
 
     def _root(self, first: float, last: float, side: str, below: bool) -> Points:

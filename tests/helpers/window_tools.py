@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import sys
 import time
 from collections.abc import Callable, Generator
@@ -149,7 +150,15 @@ class _Player:
 
     def _check_patience(self) -> None:
         if time.monotonic() > self._deadline:
-            raise TimeoutError("the window does not get there")
+            raise TimeoutError(f"the window does not get there: {self._where()}")
+
+    def _where(self) -> str:
+        """Return the line of the script, or of a part of it, that waits."""
+        play = self._play if self._window is not None else None
+        while play is not None and inspect.isgenerator(play.gi_yieldfrom):
+            play = play.gi_yieldfrom
+        frame = play.gi_frame if play is not None else None
+        return "no window is open" if frame is None else f"{frame.f_code.co_name}, line {frame.f_lineno}"
 
     def _finish(self) -> None:
         self._timer.stop()

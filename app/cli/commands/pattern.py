@@ -18,6 +18,7 @@ from app.cli.options import add_lines, add_scan
 from app.cli.output import DONE, finish, table_lines
 from app.cli.solved_design import SolvedDesign, solve_design
 from core import __version__
+from core.document.garment_pattern import ALLOWANCE
 from core.document.lower_trunk import LowerTrunk
 from core.errors import PatternError
 from core.export.pattern_csv import write_pieces, write_seams
@@ -30,9 +31,9 @@ from core.files.atomic_write import write_text
 from core.geometry.mesh import Points
 from core.messages import Message
 from core.pattern.allowance import cut_piece
-from core.pattern.block import built_in_blocks, find_block
-from core.pattern.cloth import built_in
-from core.pattern.garment import ALLOWANCE, Pattern, cut_garment
+from core.pattern.block_library import built_in_blocks, find_block
+from core.pattern.cloth_library import built_in
+from core.pattern.garment import Pattern, cut_garment
 from core.pattern.layout import PAPERS, Tiling, lay_out, lay_out_on_tiles, whole_sheet
 from core.pattern.places import BodyPlaces
 from core.pattern.seam_curves import SeamDrawing

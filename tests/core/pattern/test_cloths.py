@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 
 from core.errors import PatternError
-from core.pattern.cloth import built_in, cloth_of_stretch, find_cloth, stretch_test
 from core.pattern.cloth_csv import TEMPLATE, cloth_from_csv, read_cloth, write_cloth
+from core.pattern.cloth_library import built_in, cloth_of_stretch, find_cloth, stretch_test
 
 HEAD = "direction,stretch %,ease %,stiffness\n"
 MINE = replace(cloth_of_stretch("my net, soft", (0.4, 0.3), "tested"), limit=0.123, estimate=False)

@@ -10,8 +10,8 @@ import pytest
 from whole_trunk import trunk_stages
 
 from core.pattern.allowance import cut_piece
-from core.pattern.block import built_in_blocks, find_block
-from core.pattern.cloth import built_in
+from core.pattern.block_library import built_in_blocks, find_block
+from core.pattern.cloth_library import built_in
 from core.pattern.garment import CutGarment, Pattern, cut_garment
 from core.pattern.piece import SAME
 from core.pattern.places import BodyPlaces

@@ -17,7 +17,7 @@ from core.geometry.closest_point import nearest_faces
 from core.geometry.mesh import Mesh
 from core.landmarks.types import Landmark, Landmarks
 from core.messages import EMPTY
-from core.pattern.block import block_of, built_in_blocks, find_block
+from core.pattern.block_library import block_of, built_in_blocks, find_block
 from core.pattern.breast_map import breast_map
 from core.pattern.places import BodyPlaces
 from core.pattern.seam_curves import STEP, SeamCurve, SeamDrawing
@@ -167,13 +167,13 @@ def test_a_broken_block_says_what_is_wrong() -> None:
         return json.dumps(data)
 
     for wrong, why in (
-        ("{", "JSONDecodeError"),
+        ("{", "property name"),
         (broken(lambda d: d.pop("seams")), "seams"),
-        (broken(lambda d: d["seams"].append(d["seams"][0])), "one name"),
-        (broken(lambda d: d["levels"].update(band=["nowhere", 3])), "nowhere"),
-        (broken(lambda d: d["seams"][5].update(ring="hem")), "hem"),
+        (broken(lambda d: d["seams"].append(d["seams"][0])), "used twice"),
+        (broken(lambda d: d["levels"][0].update(reference="nowhere")), "nowhere"),
+        (broken(lambda d: d["seams"][5].update(level="hem")), "hem"),
         (broken(lambda d: d.update(panels=[])), "no panel"),
-        (broken(lambda d: d["seams"][1].update(way=["apex"])), "fewer than two"),
+        (broken(lambda d: d["seams"][1].update(places=["apex"])), "fewer than two"),
     ):
         with pytest.raises(PatternError, match=why):
             block_of("mine", wrong)
