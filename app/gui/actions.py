@@ -118,6 +118,7 @@ class Actions(Menus):
             "landmarks": tr("Landmarks"),
             "lines": tr("Lines"),
             "result": tr("Result"),
+            "pattern": tr("Pattern"),
         }
         self.steps = self.group("window", titles)
         for number, action in enumerate(self.steps.values(), start=1):

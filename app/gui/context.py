@@ -15,10 +15,10 @@ if TYPE_CHECKING:
     from app.gui.session.session import Session
     from app.gui.viewport.view_area import ViewArea
 
-STEPS = ("scan", "landmarks", "lines", "result")
-"""The steps from scan to result; those from lines on show the reshaped body."""
+STEPS = ("scan", "landmarks", "lines", "result", "pattern")
+"""The steps from scan to pattern pieces; those from lines on show the reshaped body."""
 
-RESHAPED = ("lines", "result")
+RESHAPED = ("lines", "result", "pattern")
 """The steps that show the reshaped body; the others show the original one."""
 
 

@@ -29,6 +29,9 @@ _LEAST = 440
 NARROW, WIDE = 340, 364
 """First width of the inspector in windows narrower and wider than 1400 pixels."""
 
+VIEW, NARROW_VIEW = (480, 300), (380, 300)
+"""Least width and height of the view, and those beside the pattern pieces [px]."""
+
 KEPT_AFTER = 1000
 """Stillness after which the place of the window is remembered [ms]."""
 
@@ -151,6 +154,7 @@ class Layout(QObject):
         self.pages = QStackedWidget()
         self._across = Splitter(Qt.Orientation.Horizontal, tr("Inspector width"))
         self._down = Splitter(Qt.Orientation.Vertical, tr("Live plot height"))
+        self._beside = Splitter(Qt.Orientation.Horizontal, tr("Width of the pattern pieces"))
         self._middle, self._right = QVBoxLayout(), QVBoxLayout()
         self._ring = FocusRing(window)
         self._build()
@@ -169,12 +173,16 @@ class Layout(QObject):
             column.setContentsMargins(0, 0, 0, 0)
             column.setSpacing(0)
             holder.setLayout(column)
-        window.view.setMinimumSize(480, 300)
+        window.view.setMinimumSize(*VIEW)
         # Tab goes past the view, where it hides what lies around it: F6 and the pointer lead in.
         window.view.viewport.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
         window.view.viewport.setAccessibleName(tr("3D view"))
+        window.pieces.hide()  # until the step Pattern is open
+        for place, each in enumerate((window.view, window.pieces)):
+            self._beside.addWidget(each)
+            self._beside.setStretchFactor(place, 1)
         for splitter, parts in (
-            (self._down, (window.view, window.strip)),
+            (self._down, (self._beside, window.strip)),
             (self._across, (work, window.inspector)),
         ):
             for stretch, part in zip((1, 0), parts, strict=True):
@@ -210,6 +218,10 @@ class Layout(QObject):
     def _show_step(self, step: str) -> None:
         if self._window.actions_.alone.isChecked():
             self.show_alone(False)
+        pieces = step == "pattern"
+        self._window.view.setMinimumSize(*(NARROW_VIEW if pieces else VIEW))
+        self._window.pieces.setVisible(pieces)
+        self._window.strip.setVisible(not pieces)
         self._window.rail.set_current(step)
         self._window.actions_.steps[step].setChecked(True)
 
@@ -222,8 +234,10 @@ class Layout(QObject):
         """Hide all but the view, or bring the rest back as it was."""
         window = self._window
         window.navigation.show_page(None)
-        for part in (window.rail, window.strip):
-            part.setVisible(not alone)
+        window.rail.setVisible(not alone)
+        pieces = window.navigation.step == "pattern"
+        window.strip.setVisible(not alone and not pieces)
+        window.pieces.setVisible(not alone and pieces)
         window.inspector.setVisible(not alone and window.actions_.inspector.isChecked())
         window.actions_.alone.setChecked(alone)
         window.view.viewport.setFocus()
@@ -316,7 +330,9 @@ class Layout(QObject):
         """Return the parts of the window in the order in which they are read."""
         window, page = self._window, self.pages.currentWidget()
         if page is None or page is self._across:
-            work = [window.notices, window.view, window.strip, window.inspector]
+            pieces = [] if window.pieces.isHidden() else [window.pieces]
+            strip = [] if window.strip.isHidden() else [window.strip]
+            work = [window.notices, window.view, *pieces, *strip, window.inspector]
         else:
             work = [window.notices, page]
         return [*self._over(), window.top, window.rail, *work]

@@ -47,6 +47,9 @@ from app.gui.features.measurements.custom_measures import CustomMeasuresControll
 from app.gui.features.measurements.panel import MeasurementsPanel
 from app.gui.features.model.controller import ModelController
 from app.gui.features.model.panel import ModelPanel, ModelRow
+from app.gui.features.pattern.controller import PatternController
+from app.gui.features.pattern.panel import PatternPanel
+from app.gui.features.pattern.pieces_view import PiecesView
 from app.gui.features.preferences.controller import PreferencesController
 from app.gui.features.project.autosave import AutosaveController
 from app.gui.features.project.controller import ProjectController
@@ -136,6 +139,7 @@ class MainWindow(QMainWindow):
         )
         self.scan, self.landmarks = ScanPanel(), LandmarksPanel()
         self.lines, self.result, self.garment = LinesPanel(), MeasurementsPanel(), GarmentPanel()
+        self.pattern, self.pieces = PatternPanel(), PiecesView()
         self.model, self.door, self.cups = ModelPanel(), ModelRow(), CupCard()
         self.lines.cards.addWidget(self.cups)
         self.ask_door = NavigationRow(
@@ -162,6 +166,7 @@ class MainWindow(QMainWindow):
         self._make_lines()
         self._make_garment()
         self._make_target_shape()
+        self.pattern_controller = PatternController(self.context, self.pattern, self.pieces)
         self._make_help()
         self.preferences_controller = PreferencesController(self.context, self.project_controller.may_leave)
         self.rail.add_tool("gear-six", self.preferences_controller.open)
@@ -278,6 +283,7 @@ class MainWindow(QMainWindow):
             "result": self.result,
             "garment": self.garment,
             "model": self.model,
+            "pattern": self.pattern,
         }
         pages = {self.report_controller.page: "report", self.start_controller.page: ""}
         help_ = self.help_controller = HelpController(self.context, parts, keys_of_parts, pages)
@@ -368,6 +374,7 @@ class MainWindow(QMainWindow):
                 # What the view shows of a frame is there before it is coloured and cut.
                 lambda _: self.maps_controller.follow(),
                 lambda _: self.sections_controller.follow(),
+                self.pattern_controller.follow,
             ],
             self,
         )
@@ -515,6 +522,7 @@ class MainWindow(QMainWindow):
         self.inspector.add("result", self.result, tr("Measurements"))
         self.inspector.add("garment", self.garment, tr("Garment"))
         self.inspector.add("variants", self.variants, tr("Variants"))
+        self.inspector.add("pattern", self.pattern)
         self.inspector.add("history", self.history, tr("History"))
         self.inspector.add("model", self.model)
 

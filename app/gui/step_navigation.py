@@ -1,4 +1,4 @@
-"""The steps from scan to result, down the left side of the window."""
+"""The steps from scan to pattern pieces, down the left side of the window."""
 
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 from __future__ import annotations
@@ -13,7 +13,13 @@ from app.gui.widgets.basic import ToolButton, paint_card
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
 
-STEP_ICONS = {"scan": "scan", "landmarks": "map-pin", "lines": "lines", "result": "result"}
+STEP_ICONS = {
+    "scan": "scan",
+    "landmarks": "map-pin",
+    "lines": "lines",
+    "result": "result",
+    "pattern": "pieces",
+}
 """The steps in order, with their drawings."""
 
 STATES = ("missing", "available", "done", "look", "bad")
@@ -21,7 +27,7 @@ STATES = ("missing", "available", "done", "look", "bad")
 
 
 class StepNavigation(QWidget):
-    """The four steps; none is ever locked, a missing one says what it waits for."""
+    """The five steps; none is ever locked, a missing one says what it waits for."""
 
     step_chosen = Signal(str)
 
@@ -32,7 +38,7 @@ class StepNavigation(QWidget):
         self._column.setContentsMargins(4, 8, 5, 8)
         self._column.setSpacing(2)
         group = self._group = QButtonGroup(self)
-        titles = (tr("Scan"), tr("Landmarks"), tr("Lines"), tr("Result"))
+        titles = (tr("Scan"), tr("Landmarks"), tr("Lines"), tr("Result"), tr("Pattern"))
         self.items: dict[str, StepButton] = {}
         for number, (step, title) in enumerate(zip(STEP_ICONS, titles, strict=True), start=1):
             item = StepButton(step, title, QKeySequence(f"Ctrl+{number}"))

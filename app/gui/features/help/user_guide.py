@@ -16,6 +16,7 @@ PAGES = {
     "model": ("reference/model-options", "ja/screens#ライン"),
     "garment": ("how-to/cut-list", "ja/screens#裁断"),
     "result": ("how-to/measurements", "ja/screens#寸法"),
+    "pattern": ("how-to/pattern", "ja/screens#型紙"),
     "report": ("how-to/report", "ja/screens#レポート"),
 }
 """What is being done in the window, and where the guide speaks of it, in English and in Japanese."""

@@ -68,4 +68,8 @@ def _panels() -> dict[str, str]:
             "Line, skin and volume behaviour. The choices of the paper are marked. They affect "
             "the result and are saved with the design."
         ),
+        "pattern": tr(
+            "Pieces of a garment block, laid flat so that their seams agree. Strain is what the cloth has to "
+            "take up beyond its ease; a piece that is over the limit of its cloth is marked."
+        ),
     }

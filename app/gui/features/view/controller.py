@@ -68,7 +68,7 @@ class ViewController(QObject):
         """Show the body that a step is about, with its layers."""
         reshaped = step in RESHAPED
         self._view.set_after(reshaped)
-        self._view.set_layer("bands", reshaped)
+        self._view.set_layer("bands", reshaped and step != "pattern")  # seams lie where they are
         self._view.set_layer("landmarks", step == "landmarks")
         # Colours of the skin and seams help to place landmarks; lines show best on clay.
         self._view.set_layer("colours", not reshaped)

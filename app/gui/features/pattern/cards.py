@@ -1,0 +1,260 @@
+"""Cards of what is selected: a piece with its cloth, a seam with its lengths and a knob to walk it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
+
+from app.gui.theme.stylesheet import label, set_tag
+from app.gui.widgets.basic import button, sentence
+from app.gui.widgets.menu import Menu, pull_down
+from app.gui.widgets.option_field import AmountEdit, OptionCombo
+from app.gui.widgets.tooltip import set_tip
+from app.i18n.catalog import number, tr
+from app.i18n.lengths import length
+from app.presenters.model_options import Amount
+from app.presenters.pattern import PieceRow, SeamRow
+from core.document.block import LARGEST_ALLOWANCE
+from core.document.cloth import Cloth
+
+STEPS = 200
+"""Places of the knob along a seam."""
+
+_RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
+_MOST_WAYS = 4  # ways out that are offered at once
+
+
+class _Card(QFrame):
+    """A framed card with a heading and rows of a title and a field."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        set_tag(self, "kind", "card")
+        self.column = QVBoxLayout(self)
+        self.column.setContentsMargins(12, 10, 12, 12)
+        self.column.setSpacing(6)
+        self.heading = label("", "name")
+        self.column.addWidget(self.heading)
+        self.hide()
+
+    def add_field(self, title: str, tip: str, field: QWidget) -> None:
+        """Add a row with a field at the right."""
+        row, words = QHBoxLayout(), label(title, "secondary")
+        field.setAccessibleName(title)
+        for each in (words, field):
+            set_tip(each, tip)
+        row.addWidget(words)
+        row.addStretch(1)
+        row.addWidget(field)
+        self.column.addLayout(row)
+
+
+class PieceCard(_Card):
+    """The selected piece: its strain, its cloth and grain line, and ways out where the cloth cannot take it.
+
+    ``way_chosen`` carries the number of a way out; ``ways_requested`` asks for them, ``chart_requested`` for
+    the chart of darts.
+    """
+
+    cloth_chosen = Signal(str)
+    cloth_table_requested = Signal()
+    stretch_test_requested = Signal()
+    turn_changed = Signal(float)
+    ways_requested = Signal()
+    way_chosen = Signal(int)
+    chart_requested = Signal()
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.facts, self.reason = sentence("", "secondary"), sentence("", "secondary")
+        set_tag(self.reason, "tone", "warn")
+        self.cloth = OptionCombo()
+        self.cloth.setMinimumHeight(28)
+        self._menu = Menu(self)
+        self.cloth.clicked.connect(lambda: pull_down(self._menu, self.cloth))
+        turn = Amount("turn", tr("Grain line turned"), "", "°", 1.0, 0, (-90.0, 90.0))
+        self.turn = AmountEdit(turn)
+        self.turn.entered.connect(self.turn_changed.emit)
+        self.column.addWidget(self.facts)
+        self.add_field(tr("Cloth"), tr("What the piece is cut from; both sides have the same"), self.cloth)
+        tip = tr("0° is up on the body; the greatest stretch runs square to it")
+        self.add_field(turn.title, tip, self.turn)
+        self.column.addWidget(self.reason)
+        self._ways = QVBoxLayout()
+        self._ways.setSpacing(4)
+        self.column.addLayout(self._ways)
+        self.column.addLayout(self._make_buttons())
+
+    def _make_buttons(self) -> QHBoxLayout:
+        row = QHBoxLayout()
+        row.setSpacing(6)
+        self.look_for = button(tr("Find ways out"))
+        set_tip(self.look_for, tr("Try a dart, another cloth and one more seam, and measure what each leaves"))
+        self.look_for.clicked.connect(self.ways_requested)
+        self.chart = button(tr("Where a dart helps"))
+        set_tip(self.chart, tr("Try darts all round the piece and draw on the body what each leaves"))
+        self.chart.clicked.connect(self.chart_requested)
+        row.addWidget(self.look_for)
+        row.addWidget(self.chart)
+        row.addStretch(1)
+        return row
+
+    def show_piece(self, row: PieceRow | None, cloths: Sequence[Cloth], cloth: str, turn: float) -> None:
+        """Show a piece, made of the cloth of this name; None hides the card."""
+        self.setVisible(row is not None)
+        if row is None:
+            return
+        self.heading.setText(row.title)
+        facts = tr("95 % of its area within {strain} %; the cloth takes up {limit} %. {area} cm².")
+        self.facts.setText(
+            facts.format(
+                strain=number(row.strain_percent, 1),
+                limit=number(row.limit_percent, 0),
+                area=number(row.area_cm2, 0),
+            )
+        )
+        self.reason.setText(row.reason)
+        self.reason.setVisible(bool(row.reason))
+        self.look_for.setVisible(not row.fits)
+        self.turn.show_value(turn)
+        self._fill_menu(cloths, cloth)
+
+    def _fill_menu(self, cloths: Sequence[Cloth], chosen: str) -> None:
+        self._menu.clear()
+        for cloth in cloths:
+            title = cloth_title(cloth)
+            action = self._menu.addAction(title)
+            action.setCheckable(True)
+            action.setChecked(cloth.name == chosen)
+            action.triggered.connect(lambda _=False, name=cloth.name: self.cloth_chosen.emit(name))
+            if cloth.name == chosen:
+                self.cloth.setText(title)
+        self._menu.addSeparator()
+        self._menu.addAction(tr("Cloth from table…")).triggered.connect(self.cloth_table_requested)
+        self._menu.addAction(tr("Save table of the 10 cm test…")).triggered.connect(
+            self.stretch_test_requested
+        )
+
+    def show_ways(self, words: Sequence[str], note: str = "") -> None:
+        """Offer ways out by their sentences, the best first; ``note`` says that they are being looked for."""
+        while self._ways.count():
+            item = self._ways.takeAt(0)
+            if item is not None and (old := item.widget()) is not None:
+                old.deleteLater()
+        if note:
+            self._ways.addWidget(sentence(note, "caption"))
+        for place, text in enumerate(words[:_MOST_WAYS]):
+            press = _WayButton(text)
+            press.clicked.connect(_emitting(self.way_chosen.emit, place))
+            self._ways.addWidget(press)
+
+
+class _WayButton(QFrame):
+    """A way out: what it leaves, and a button that applies it."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(8)
+        row.addWidget(sentence(text, "secondary"), 1)
+        self._press = button(tr("Apply"))
+        self._press.setAccessibleDescription(text)
+        self.clicked = self._press.clicked
+        row.addWidget(self._press, alignment=Qt.AlignmentFlag.AlignTop)
+
+
+class SeamCard(_Card):
+    """The selected seam: its lengths on the body and on both pieces, its allowance, and a knob to walk it."""
+
+    allowance_changed = Signal(object)
+    walked = Signal(object)
+    reset_requested = Signal()
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._grid = QGridLayout()
+        self._grid.setHorizontalSpacing(10)
+        self._grid.setVerticalSpacing(3)
+        self._grid.setColumnStretch(0, 1)
+        self._cells: list[QLabel] = []
+        self.note = sentence("", "secondary")
+        set_tag(self.note, "tone", "warn")
+        self.hint = sentence(tr("Drag the points of the seam on the body to move it."), "caption")
+        amount = Amount("gain", tr("Seam allowance"), "", "mm", 1.0, 1, (0.0, LARGEST_ALLOWANCE))
+        self.allowance = AmountEdit(amount)  # left empty it is that of the pattern
+        self.allowance.entered.connect(self.allowance_changed.emit)
+        self.column.addLayout(self._grid)
+        self.column.addWidget(self.note)
+        tip = tr("Left empty it is that of the whole pattern")
+        self.add_field(amount.title, tip, self.allowance)
+        self.column.addLayout(self._make_walk())
+        self.column.addWidget(self.hint)
+        self.reset = button(tr("Reset seam"))
+        set_tip(self.reset, tr("Move its points back to where the block has them"))
+        self.reset.clicked.connect(self.reset_requested)
+        self.column.addWidget(self.reset, alignment=Qt.AlignmentFlag.AlignLeft)
+
+    def _make_walk(self) -> QHBoxLayout:
+        row = QHBoxLayout()
+        self.knob = QSlider(Qt.Orientation.Horizontal)
+        self.knob.setRange(0, STEPS)
+        self.knob.setAccessibleName(tr("Walk the seam"))
+        self.so_far = label("", "caption", tabular=True)
+        set_tip(self.knob, tr("Walk the seam: the same place on the body and on both pieces"))
+        self.knob.valueChanged.connect(lambda value: self.walked.emit(value / STEPS))
+        row.addWidget(label(tr("Walk the seam"), "secondary"))
+        row.addWidget(self.knob, 1)
+        row.addWidget(self.so_far)
+        return row
+
+    def show_seam(
+        self, title: str, rows: Sequence[SeamRow], allowance: float | None, can_reset: bool
+    ) -> None:
+        """Show a seam by all pairs of pieces that it joins; one without pairs is an edge."""
+        self.show()
+        self.heading.setText(title)
+        self.allowance.show_value(allowance)
+        self.reset.setVisible(can_reset)
+        self.note.setText(" ".join(row.note for row in rows if row.note))
+        self.note.setVisible(bool(self.note.text()))
+        lines: list[tuple[str, str]] = []
+        for row in rows:
+            if len(rows) > 1:
+                lines.append((" | ".join(row.pieces), ""))
+            (first, second), (one, other) = row.lengths_mm, row.alone_mm
+            lines += [
+                (tr("On the body"), length(row.on_body_mm, 1)),
+                (tr("Each piece alone"), f"{number(one, 1)} / {length(other, 1)}"),
+                (tr("Matched"), f"{number(first, 1)} / {length(second, 1)}"),
+            ]
+        self._show_lines(lines or [(tr("An edge: nothing is sewn to it."), "")])
+
+    def show_walked(self, words: str) -> None:
+        """Show the lengths up to the knob."""
+        self.so_far.setText(words)
+
+    def _show_lines(self, lines: Sequence[tuple[str, str]]) -> None:
+        for old in self._cells:
+            old.deleteLater()
+        self._cells = []
+        for at, (title, value) in enumerate(lines):
+            words, figure = label(title, "secondary"), label(value, "secondary", tabular=True)
+            self._grid.addWidget(words, at, 0)
+            self._grid.addWidget(figure, at, 1, _RIGHT)
+            self._cells += [words, figure]
+
+
+def cloth_title(cloth: Cloth) -> str:
+    """Return the title of a cloth in the language in use."""
+    from app.presenters.messages import render  # noqa: PLC0415
+    from core.messages import ClothName, Message  # noqa: PLC0415
+
+    return render(Message("{name}", name=ClothName(cloth.title)))
+
+
+def _emitting(emit: Callable[[int], Any], place: int) -> Callable[[], None]:
+    return lambda: emit(place)

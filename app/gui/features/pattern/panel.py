@@ -1,0 +1,186 @@
+"""Panel of the pattern: its block, its verdict, its pieces, and what is selected of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QStackedWidget, QVBoxLayout, QWidget
+
+from app.gui.features.pattern.cards import PieceCard, SeamCard
+from app.gui.features.pattern.piece_list import PieceList
+from app.gui.theme.stylesheet import font, label, set_tag
+from app.gui.widgets.basic import ScrollColumn, button, hairline, sentence
+from app.gui.widgets.menu import Menu, pull_down
+from app.gui.widgets.navigation_row import NavigationRow
+from app.gui.widgets.option_field import AmountEdit, OptionCombo
+from app.gui.widgets.tooltip import set_tip
+from app.i18n.catalog import tr
+from app.presenters.model_options import Amount
+from app.presenters.pattern import PieceRow
+from core.document.block import LARGEST_ALLOWANCE
+from core.document.garment_pattern import GarmentPattern
+
+
+class PatternPanel(QStackedWidget):
+    """Offers blocks where there is none; else shows the pieces.
+
+    ``block_chosen`` carries the name of a block that comes with Busk.
+    """
+
+    block_chosen = Signal(str)
+    block_file_requested = Signal()
+    save_block_requested = Signal()
+    removed = Signal()
+    piece_chosen = Signal(str)
+    allowance_changed = Signal(float)
+    bridged_changed = Signal(bool)
+    export_requested = Signal()
+    lines_requested = Signal()
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.block_doors: dict[str, NavigationRow] = {}
+        self.list, self.piece_card, self.seam_card = PieceList(), PieceCard(), SeamCard()
+        self.verdict, self.note = sentence("", "body"), sentence("", "secondary")
+        self.addWidget(self._make_choice())
+        self.addWidget(self._make_pieces())
+        self.list.chosen.connect(self.piece_chosen)
+
+    # -- where there is no pattern
+
+    def _make_choice(self) -> QWidget:
+        page = ScrollColumn(tr("Garment blocks"), (0, 12, 0, 12), 0)
+        head = QVBoxLayout()
+        head.setContentsMargins(18, 0, 18, 10)
+        head.setSpacing(6)
+        head.addWidget(label(tr("Pattern pieces"), "heading"))
+        words = tr(
+            "Choose a garment block. Its seams are drawn on the body by landmarks, and its pieces are laid "
+            "flat beside it."
+        )
+        head.addWidget(sentence(words))
+        page.column.addLayout(head)
+        self._doors = QVBoxLayout()
+        self._doors.setSpacing(0)
+        page.column.addLayout(self._doors)
+        self.open_block = NavigationRow(tr("Open block…"), tr("A block that was saved as a file"))
+        self.open_block.clicked.connect(self.block_file_requested)
+        page.column.addWidget(self.open_block)
+        page.column.addStretch(1)
+        return page
+
+    def set_blocks(self, blocks: Sequence[tuple[str, str, str]]) -> None:
+        """Set the blocks that are offered: name, title, and a line about each."""
+        menu = self._menu
+        for name, title, words in blocks:
+            door = self.block_doors[name] = NavigationRow(title, words)
+            door.clicked.connect(lambda _=False, name=name: self.block_chosen.emit(name))
+            self._doors.addWidget(door)
+            menu.addAction(title).triggered.connect(lambda _=False, name=name: self.block_chosen.emit(name))
+        menu.addSeparator()
+        menu.addAction(tr("Open block…")).triggered.connect(self.block_file_requested)
+        menu.addAction(tr("Save block as…")).triggered.connect(self.save_block_requested)
+        menu.addSeparator()
+        menu.addAction(tr("Remove pattern")).triggered.connect(self.removed)
+
+    # -- the pieces
+
+    def _make_pieces(self) -> QWidget:
+        holder = QWidget()
+        whole = QVBoxLayout(holder)
+        whole.setContentsMargins(0, 0, 0, 0)
+        whole.setSpacing(0)
+        page = ScrollColumn(tr("Pattern pieces"), (12, 12, 12, 12), 8)
+        column = page.column
+        column.addLayout(self._make_head())
+        for each in (self.verdict, self.note):
+            each.setContentsMargins(6, 0, 6, 0)
+            column.addWidget(each)
+        column.addWidget(self.list)
+        column.addWidget(self.piece_card)
+        column.addWidget(self.seam_card)
+        column.addWidget(hairline())
+        column.addLayout(self._make_settings())
+        column.addStretch(1)
+        whole.addWidget(page, 1)
+        whole.addWidget(self._make_foot())
+        return holder
+
+    def _make_head(self) -> QHBoxLayout:
+        row = QHBoxLayout()
+        row.setContentsMargins(6, 0, 6, 0)
+        self.block = OptionCombo()
+        self.block.setMinimumHeight(30)
+        self.block.setAccessibleName(tr("Garment block"))
+        set_tip(self.block, tr("Choose another block, open one or save this one"))
+        self._menu = Menu(self)
+        self.block.clicked.connect(lambda: pull_down(self._menu, self.block))
+        row.addWidget(self.block, 1)
+        return row
+
+    def _make_settings(self) -> QVBoxLayout:
+        column, row = QVBoxLayout(), QHBoxLayout()
+        column.setContentsMargins(6, 0, 6, 0)
+        column.setSpacing(6)
+        tip = tr("Of all seams and edges that do not have their own")
+        amount = Amount("allowance", tr("Seam allowance"), tip, "mm", 1.0, 1, (0.0, LARGEST_ALLOWANCE))
+        self.allowance = AmountEdit(amount)
+        self.allowance.setAccessibleName(amount.title)
+        self.allowance.entered.connect(self.allowance_changed.emit)
+        title = label(amount.title, "secondary")
+        for each in (title, self.allowance):
+            set_tip(each, tip)
+        row.addWidget(title)
+        row.addStretch(1)
+        row.addWidget(self.allowance)
+        column.addLayout(row)
+        self.bridged = QCheckBox(tr("Cloth bridges hollows"))
+        self.bridged.setFont(font("secondary"))
+        set_tip(
+            self.bridged,
+            tr("Between the breasts, below an overhang and in the cleft, cloth leaves the skin"),
+        )
+        self.bridged.clicked.connect(self.bridged_changed)
+        column.addWidget(self.bridged)
+        return column
+
+    def _make_foot(self) -> QWidget:
+        foot = QWidget()
+        column = QVBoxLayout(foot)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        self.lines_door = NavigationRow(tr("Line lengths"), tr("Set line lengths; the pieces follow"))
+        self.lines_door.clicked.connect(self.lines_requested)
+        column.addWidget(self.lines_door)
+        column.addWidget(hairline())
+        row = QHBoxLayout()
+        row.setContentsMargins(18, 10, 18, 12)
+        self.export = button(tr("Export pieces…"), "primary")
+        self.export.clicked.connect(self.export_requested)
+        row.addWidget(self.export, 1)
+        column.addLayout(row)
+        return foot
+
+    def show_plan(self, plan: GarmentPattern | None, title: str) -> None:
+        """Show the settings of a pattern, or the choice of blocks; nothing is emitted."""
+        self.setCurrentIndex(0 if plan is None else 1)
+        if plan is None:
+            return
+        self.block.setText(title)
+        self.allowance.show_value(plan.allowance)
+        self.bridged.setChecked(plan.bridged)
+
+    def show_pieces(self, rows: Sequence[PieceRow], faint: bool, selected: str) -> None:
+        """Show the pieces, ``faint`` where they are of a former shape."""
+        self.list.show_rows(rows, faint, selected)
+        for each in (self.list, self.piece_card, self.seam_card):
+            each.setEnabled(True)
+
+    def show_verdict(self, words: str, tone: str, note: str = "") -> None:
+        """Show whether the pieces can be cut and sewn, in a tone of the style sheet."""
+        self.verdict.setText(words)
+        set_tag(self.verdict, "tone", tone)
+        self.note.setText(note)
+        self.note.setVisible(bool(note))
+

@@ -1,0 +1,373 @@
+"""The pieces of a pattern laid flat: strain in colours, seams that are pointed at, chosen and walked."""
+
+# ruff: noqa: D102, N802 - Qt names its events and says what they are
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, QSize, Qt, Signal
+from PySide6.QtGui import (
+    QColor,
+    QKeyEvent,
+    QMouseEvent,
+    QPainter,
+    QPaintEvent,
+    QPen,
+    QPixmap,
+    QPolygonF,
+    QResizeEvent,
+    QWheelEvent,
+)
+from PySide6.QtWidgets import QWidget
+
+from app.gui.plots.painting import curve_path
+from app.gui.theme.stylesheet import font, tokens_of
+from app.gui.widgets.basic import announce
+from app.gui.widgets.tooltip import watch_tip
+from app.i18n.catalog import number, tr
+from app.presenters.pattern_layout import PieceShape, arranged
+from app.rendering.palette import MAP_LESS, MAP_MORE
+from app.rendering.vertex_colors import Ramp
+from core.geometry.mesh import Floats, Points
+from core.geometry.plane_sections import arc_length, interpolate
+
+BLANK = {False: "#FFFFFF", True: "#5A5753"}
+"""Colour of cloth without strain in the light and in the dark theme."""
+
+STEPS = 20
+"""Colours in which strain is drawn: one fill each."""
+
+_EDGE = 18.0  # round the pieces [px]
+_NEAR = 7.0  # how near to a seam the pointer means it [px]
+_FARTHEST = (0.4, 12.0)  # of the scale in which all is seen [1]
+_FAINT = 0.35  # how opaque pieces of a former shape are [1]
+
+
+def strain_ramp(limit: float, dark: bool) -> Ramp:
+    """Return the colours of strain: compressed to stretched, up to the ``limit`` of a cloth [1]."""
+    return Ramp((*MAP_LESS, BLANK[dark], *MAP_MORE), -limit, limit, BLANK[dark])
+
+
+class PiecesView(QWidget):
+    """Shows the pieces; ``piece_chosen`` and ``seam_chosen`` name what is clicked, ``seam_hovered`` the seam
+    under the pointer (off all seams: an empty name).
+
+    The wheel zooms, a drag moves, a double click shows all again.
+    """
+
+    piece_chosen = Signal(str)
+    seam_chosen = Signal(str)
+    seam_hovered = Signal(str)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setMouseTracking(True)
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.setAccessibleName(tr("Pattern pieces"))
+        self.setMinimumWidth(220)
+        watch_tip(self)
+        self._shapes: tuple[PieceShape, ...] = ()
+        self._titles: Mapping[str, str] = {}
+        self._values: Mapping[str, str] = {}
+        self._moves = np.zeros((0, 2))
+        self._names: tuple[str, ...] = ()
+        self._cloth: QPixmap | None = None
+        self._faint = False
+        self._words = ""
+        self.piece = self.seam = self.hovered = ""
+        self._knob: float | None = None
+        self._scale, self._centre = 1.0, np.zeros(2)
+        self._by_hand = False
+        self._pressed: QPointF | None = None
+        self._dragged = False
+
+    def sizeHint(self) -> QSize:
+        return QSize(420, 400)
+
+    # -- what is shown
+
+    def show_pieces(
+        self, shapes: Sequence[PieceShape], titles: Mapping[str, str], values: Mapping[str, str]
+    ) -> None:
+        """Show pieces, with their titles and the value written on each; they stay where they are if they can.
+
+        A piece is moved only when there are others, or the room is another.
+        """
+        names = tuple(shape.name for shape in shapes)
+        fresh = names != self._names
+        self._shapes, self._titles, self._values, self._names = tuple(shapes), titles, values, names
+        if fresh:
+            self._by_hand = False
+            self._arrange()
+        elif not self._by_hand:
+            self._fit()
+        self._redraw()
+
+    def show_words(self, words: str) -> None:
+        """Say why there are no pieces, in the middle."""
+        self._words = words
+        self.update()
+
+    def set_faint(self, faint: bool) -> None:
+        """Draw the pieces faintly: they are of a former shape."""
+        if faint != self._faint:
+            self._faint = faint
+            self.update()
+
+    def select(self, piece: str, seam: str) -> None:
+        """Mark a piece and a seam; an empty name marks none."""
+        self.piece, self.seam = piece, seam
+        self.update()
+
+    def hover(self, seam: str) -> None:
+        """Mark the seam under the pointer, here or on the body."""
+        if seam != self.hovered:
+            self.hovered = seam
+            self.update()
+
+    def walk(self, share: float | None) -> None:
+        """Show a knob at a share of the length of the selected seam on all its pieces, or none."""
+        self._knob = share
+        self.update()
+
+    # -- where things are
+
+    def _arrange(self) -> None:
+        self._moves = arranged(self._shapes, max(self.width(), 1) / max(self.height(), 1))
+        self._fit()
+
+    def _fit(self) -> None:
+        """Show all pieces."""
+        if not self._shapes:
+            return
+        whole = np.concatenate([s.points + m for s, m in zip(self._shapes, self._moves, strict=True)])
+        low, high = whole.min(axis=0), whole.max(axis=0)
+        room = np.maximum(np.array([self.width(), self.height()]) - 2.0 * _EDGE, 10.0)
+        self._scale = float((room / np.maximum(high - low, 1.0)).min())
+        self._centre = 0.5 * (low + high)
+
+    def _spots(self, points: Points) -> Floats:
+        """Return places of the layout on the widget, (k, 2) [px]."""
+        middle = np.array([self.width(), self.height()]) / 2.0
+        return np.asarray(middle + self._scale * (points - self._centre) * [1.0, -1.0])
+
+    def piece_at(self, spot: QPointF) -> str:
+        """Return the piece at a place of the widget, or an empty text."""
+        for shape, move in zip(self._shapes, self._moves, strict=True):
+            outline = np.concatenate([points[:-1] for _, points in shape.sides])
+            if _polygon(self._spots(shape.points[outline] + move)).containsPoint(
+                spot, Qt.FillRule.OddEvenFill
+            ):
+                return shape.name
+        return ""
+
+    def seam_at(self, spot: QPointF) -> str:
+        """Return the seam within reach of a place of the widget, or an empty text."""
+        best, found = _NEAR, ""
+        place = np.array([spot.x(), spot.y()])
+        for shape, move in zip(self._shapes, self._moves, strict=True):
+            for name, points in shape.sides:
+                away = _distance(self._spots(shape.points[points] + move), place)
+                if away < best:
+                    best, found = away, name
+        return found
+
+    def strain_at(self, spot: QPointF) -> float | None:
+        """Return the strain of the cloth at a place of the widget [1], None off the pieces."""
+        name = self.piece_at(spot)
+        for shape, move in zip(self._shapes, self._moves, strict=True):
+            if shape.name == name:
+                middles = self._spots(shape.points[shape.faces].mean(axis=1) + move)
+                return float(shape.strain[np.hypot(*(middles - [spot.x(), spot.y()]).T).argmin()])
+        return None
+
+    # -- the hand
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        if event.button() == Qt.MouseButton.LeftButton:
+            self._pressed, self._dragged = event.position(), False
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:
+        if self._pressed is None:
+            seam = self.seam_at(event.position())
+            if seam != self.hovered:
+                self.hover(seam)
+                self.seam_hovered.emit(seam)
+            return
+        step = event.position() - self._pressed
+        if self._dragged or step.manhattanLength() > 4.0:
+            self._dragged, self._by_hand, self._pressed = True, True, event.position()
+            self._centre = self._centre - np.array([step.x(), -step.y()]) / self._scale
+            self._redraw()
+
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:
+        if self._pressed is not None and not self._dragged:
+            seam = self.seam_at(event.position())
+            if seam:
+                self.seam_chosen.emit(seam)
+            else:
+                self.piece_chosen.emit(self.piece_at(event.position()))
+        self._pressed = None
+
+    def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
+        self._by_hand = False
+        self._arrange()
+        self._redraw()
+
+    def leaveEvent(self, event: QEvent) -> None:
+        if self.hovered:
+            self.hover("")
+            self.seam_hovered.emit("")
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        self._zoom(1.2 ** (event.angleDelta().y() / 120.0), event.position())
+
+    def _zoom(self, factor: float, spot: QPointF) -> None:
+        here = np.array([spot.x(), spot.y()]) - np.array([self.width(), self.height()]) / 2.0
+        former, self._by_hand = self._scale, True
+        self._scale = float(np.clip(former * factor, *(_FARTHEST[0] * 0.2, _FARTHEST[1])))
+        self._centre = self._centre + here * [1.0, -1.0] * (1.0 / former - 1.0 / self._scale)
+        self._redraw()
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        """Go from piece to piece by arrow keys."""
+        step = {Qt.Key.Key_Right: 1, Qt.Key.Key_Down: 1, Qt.Key.Key_Left: -1, Qt.Key.Key_Up: -1}
+        turn = step.get(Qt.Key(event.key()))
+        if turn is None or not self._names:
+            event.ignore()
+            return
+        at = self._names.index(self.piece) if self.piece in self._names else -max(turn, 0)
+        name = self._names[(at + turn) % len(self._names)]
+        self.piece_chosen.emit(name)
+        announce(self, f"{self._titles.get(name, name)} {self._values.get(name, '')}")
+
+    def tip_at(self, place: QPoint) -> str:
+        """Return how far the cloth is stretched at a place of the widget, or nothing off the pieces."""
+        spot = QPointF(place)
+        strain, name = self.strain_at(spot), self.piece_at(spot)
+        if strain is None:
+            return ""
+        way = tr("stretched by {percent} %") if strain >= 0.0 else tr("compressed by {percent} %")
+        words = way.format(percent=number(abs(100.0 * strain), 1))
+        return f"{self._titles.get(name, name)}: {words}"
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        if not self._by_hand:
+            self._arrange()
+        self._redraw()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange:
+            self._redraw()
+
+    # -- painting
+
+    def _redraw(self) -> None:
+        self._cloth = None
+        self.update()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        tokens, painter = tokens_of(self), QPainter(self)
+        painter.fillRect(self.rect(), QColor(tokens.app))
+        if self._words:
+            self._paint_words(painter)
+        if not self._shapes:
+            return
+        painter.setOpacity(_FAINT if self._faint else 1.0)
+        if self._cloth is None:
+            self._cloth = self._paint_cloth()
+        painter.drawPixmap(0, 0, self._cloth)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        for shape, move in zip(self._shapes, self._moves, strict=True):
+            self._paint_sides(painter, shape, move)
+        self._paint_titles(painter)
+
+    def _paint_words(self, painter: QPainter) -> None:
+        painter.setFont(font("body"))
+        painter.setPen(QColor(tokens_of(self).text_quiet))
+        room = QRectF(self.rect()).adjusted(24, 24, -24, -24)
+        painter.drawText(room, Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap, self._words)
+
+    def _paint_cloth(self) -> QPixmap:
+        """Return all pieces in the colours of their strain, with a path for each colour."""
+        ratio, dark = self.devicePixelRatioF(), tokens_of(self).dark
+        picture = QPixmap(self.size() * ratio)
+        picture.setDevicePixelRatio(ratio)
+        picture.fill(Qt.GlobalColor.transparent)
+        painter = QPainter(picture)
+        share = np.concatenate([s.strain / s.limit for s in self._shapes])
+        step = np.round(np.clip(0.5 + 0.5 * share, 0.0, 1.0) * STEPS).astype(np.int64)
+        corners = np.concatenate(
+            [self._spots(s.points + m)[s.faces] for s, m in zip(self._shapes, self._moves, strict=True)]
+        )
+        colours = strain_ramp(1.0, dark)(np.linspace(-1.0, 1.0, STEPS + 1))
+        for number in np.unique(step):
+            own = corners[step == number]
+            closed = np.concatenate([own, own[:, :1], np.full((len(own), 1, 2), np.nan)], axis=1)
+            path = curve_path(closed.reshape(-1, 2))
+            ink = QColor(*np.round(colours[number]).astype(int).tolist())
+            painter.setPen(QPen(ink, 0.8))  # closes the hair between two triangles
+            painter.setBrush(ink)
+            painter.drawPath(path)
+        painter.end()
+        return picture
+
+    def _paint_sides(self, painter: QPainter, shape: PieceShape, move: Floats) -> None:
+        tokens = tokens_of(self)
+        outline = np.concatenate([points[:-1] for _, points in shape.sides])
+        edge = tokens.accent if shape.name == self.piece else tokens.bad if not shape.fits else tokens.text
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.setPen(QPen(QColor(edge), 2.0 if shape.name == self.piece else 1.2))
+        painter.drawPolygon(_polygon(self._spots(shape.points[outline] + move)))
+        for name, points in shape.sides:
+            if name not in (self.seam, self.hovered) or not name:
+                continue
+            spots = self._spots(shape.points[points] + move)
+            pen = QPen(QColor(tokens.accent), 4.0 if name == self.seam else 3.0)
+            pen.setCapStyle(Qt.PenCapStyle.RoundCap)
+            painter.setPen(pen)
+            painter.drawPolyline(_polygon(spots))
+            if name == self.seam and self._knob is not None:
+                self._paint_knob(painter, _walked(shape.points[points], self._knob) + move)
+
+    def _paint_knob(self, painter: QPainter, place: Floats) -> None:
+        tokens, (x, y) = tokens_of(self), self._spots(place[None])[0]
+        painter.setPen(QPen(QColor(tokens.accent), 2.5))
+        painter.setBrush(QColor(tokens.raised))
+        painter.drawEllipse(QPointF(x, y), 6.5, 6.5)
+
+    def _paint_titles(self, painter: QPainter) -> None:
+        tokens = tokens_of(self)
+        dark_on_light = QColor("#1C1B1A" if not tokens.dark else "#F4F2EF")
+        for shape, move in zip(self._shapes, self._moves, strict=True):
+            x, y = self._spots((shape.points.mean(axis=0) + move)[None])[0]
+            room = self._scale * shape.size[0] + 24.0
+            words = self._titles.get(shape.name, shape.name), self._values.get(shape.name, "")
+            for line, (text, role) in enumerate(zip(words, ("title", "caption"), strict=True)):
+                painter.setFont(font(role))
+                shown = painter.fontMetrics().elidedText(text, Qt.TextElideMode.ElideRight, round(room))
+                ink = QColor(tokens.bad) if line and not shape.fits else dark_on_light
+                painter.setPen(ink)
+                where = QRectF(x - room / 2.0, y - 15.0 + 14.0 * line, room, 15.0)
+                painter.drawText(where, Qt.AlignmentFlag.AlignCenter, shown)
+
+
+def _walked(points: Floats, share: float) -> Floats:
+    """Return the place at a share of the length of a side, (2,) [mm]."""
+    along = arc_length(points)
+    return np.asarray(interpolate(np.array([share * along[-1]]), along, points)[0])
+
+
+def _polygon(spots: Floats) -> QPolygonF:
+    return QPolygonF([QPointF(x, y) for x, y in spots.tolist()])
+
+
+def _distance(curve: Floats, place: Floats) -> float:
+    """Return how far a place is from a polyline (k, 2) [px]."""
+    start, step = curve[:-1], np.diff(curve, axis=0)
+    long = np.maximum((step**2).sum(axis=1), 1e-12)
+    at = np.clip(((place - start) * step).sum(axis=1) / long, 0.0, 1.0)
+    return float(np.hypot(*(start + at[:, None] * step - place).T).min())

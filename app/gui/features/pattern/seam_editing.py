@@ -1,0 +1,184 @@
+"""Seams moved by hand: a point is another word in the block, tried while dragged, one step when dropped."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PySide6.QtCore import QObject
+
+from app.i18n.catalog import number, tr
+from app.presenters.pattern import piece_title, seam_title
+from core.document.block import Block, Seam
+from core.document.garment_pattern import GarmentPattern
+from core.errors import UserError
+from core.geometry.mesh import Points
+from core.geometry.plane_sections import arc_length, interpolate
+from core.pattern.block_library import built_in_blocks
+from core.pattern.garment import Pattern
+from core.pattern.seam_moves import moved_block, seam_handles
+
+if TYPE_CHECKING:
+    from app.gui.context import AppContext
+    from app.gui.features.pattern.controller import PatternController
+
+
+@dataclass(frozen=True, eq=False)
+class Walked:
+    """A place of a seam on the body, ``places`` (k, 3) [mm], and the lengths up to it in ``words``."""
+
+    places: Points
+    words: str
+
+
+class SeamEditing(QObject):
+    """Edits of seams and pieces of the plan; ``trial`` is the plan while a point is dragged."""
+
+    def __init__(self, context: AppContext, controller: PatternController) -> None:
+        super().__init__(controller)
+        self._session, self._controller = context.session, controller
+        self._notifications = context.notifications
+        self.trial: GarmentPattern | None = None
+        layer, panel = controller.layer, controller.panel
+        layer.moved.connect(self._move)
+        layer.dropped.connect(self._drop)
+        layer.cancelled.connect(self._cancel)
+        panel.seam_card.allowance_changed.connect(self.set_allowance)
+        panel.seam_card.reset_requested.connect(self.reset)
+        panel.piece_card.cloth_chosen.connect(self.choose_cloth)
+        panel.piece_card.turn_changed.connect(self.turn)
+
+    @property
+    def carries(self) -> bool:
+        """Return whether a hand has hold of a point of a seam."""
+        return self._controller.layer.carries
+
+    def let_go(self) -> bool:
+        """Move the seam back to where a hand took hold of it; returns whether one had."""
+        had = self.trial is not None
+        self._cancel()
+        return had
+
+    # -- a point of the selected seam
+
+    def handles(self) -> Points:
+        """Return the points of the selected seam on the body at rest, (h, 3) [mm]."""
+        result, plan, name = self._controller.result, self._controller.plan, self._controller.seam
+        if result is None or plan is None or self.seam(plan.block, name) is None:
+            return np.empty((0, 3))
+        found = seam_handles(result.drawing, result.pattern.garment.block, name)
+        return np.array([place for _, place in found]).reshape(-1, 3)
+
+    def _move(self, number_: int, place: Points) -> None:
+        """Try the plan with a point of the seam at a place of the body at rest, (3,) [mm]."""
+        controller, plan = self._controller, self._controller.plan
+        if controller.result is None or plan is None:
+            return
+        if self.trial is None:
+            controller.carrying_changed.emit()
+        try:
+            block = moved_block(controller.result.drawing, plan.block, controller.seam, number_, place)
+            self.trial = replace(plan, block=block)
+        except UserError as error:
+            self._notifications.error(error, "pattern")
+            return
+        if self._session.frame is not None:
+            controller.follow(self._session.frame)
+
+    def _drop(self) -> None:
+        trial, self.trial = self.trial, None
+        self._controller.carrying_changed.emit()
+        if trial is not None:
+            text = tr("{seam} moved").format(seam=seam_title(self._controller.seam))
+            self._controller.change(text, block=trial.block)
+
+    def _cancel(self) -> None:
+        self.trial = None
+        self._controller.carrying_changed.emit()
+        if self._session.frame is not None:
+            self._controller.follow(self._session.frame)
+
+    def seam(self, block: Block, name: str) -> Seam | None:
+        """Return the seam of a curve, None for an unknown name."""
+        try:
+            return block.seam(name)
+        except KeyError:
+            return None
+
+    def is_moved(self, block: Block, seam: Seam) -> bool:
+        """Return whether a seam lies elsewhere than in the block that comes with Busk."""
+        original = _original(block)
+        return original is not None and self.seam(original, seam.name) not in (None, seam)
+
+    def reset(self) -> None:
+        """Move the points of the selected seam back."""
+        plan, name = self._controller.plan, self._controller.seam
+        original = None if plan is None else _original(plan.block)
+        seam = None if original is None else self.seam(original, name)
+        if seam is not None:
+            self._edit_seam(seam, tr("{seam} reset").format(seam=seam_title(name)))
+
+    def set_allowance(self, mm: float | None) -> None:
+        """Set the allowance of the selected seam [mm], None for that of the pattern."""
+        plan, name = self._controller.plan, self._controller.seam
+        seam = None if plan is None else self.seam(plan.block, name)
+        if seam is not None:
+            amount = tr("as the pattern") if mm is None else f"{number(mm, 1)} mm"
+            text = tr("Allowance of {seam}: {amount}").format(seam=seam_title(name), amount=amount)
+            self._edit_seam(replace(seam, allowance=mm), text)
+
+    def _edit_seam(self, seam: Seam, text: str) -> None:
+        plan = self._controller.plan
+        assert plan is not None
+        seams = tuple(seam if each.name == seam.name else each for each in plan.block.seams)
+        self._controller.change(text, block=replace(plan.block, seams=seams))
+
+    # -- the selected piece
+
+    def choose_cloth(self, cloth: str) -> None:
+        """Cut the selected piece, and that of the other side, from another cloth."""
+        piece = self._controller.piece
+        text = tr("Cloth of {piece}: {cloth}").format(piece=_both(piece), cloth=cloth)
+        self._edit_panel(text, cloth=cloth)
+
+    def turn(self, degrees: float) -> None:
+        """Turn the grain line of the selected piece [degrees]."""
+        text = tr("Grain line of {piece}: {turn}°")
+        self._edit_panel(
+            text.format(piece=_both(self._controller.piece), turn=number(degrees, 0)), turn=degrees
+        )
+
+    def _edit_panel(self, text: str, **changes: object) -> None:
+        plan, piece = self._controller.plan, self._controller.piece
+        if plan is None:
+            return
+        base = piece.removesuffix(" left").removesuffix(" right")
+        panels = tuple(
+            replace(each, **changes) if each.name in (piece, base) else each  # type: ignore[arg-type]
+            for each in plan.block.panels
+        )
+        self._controller.change(text, block=replace(plan.block, panels=panels))
+
+    # -- walking
+
+    def walked(self, pattern: Pattern, name: str, share: float) -> Walked:
+        """Return the place at a share of the length of a seam, on the body and on its pieces."""
+        places, lengths = [], []
+        fits = [fit for fit in pattern.matched.fits if fit.seam.name == name]
+        for fit in fits:
+            panel, points = fit.seam.panels[0], fit.seam.points[0]
+            curve = pattern.places[panel][points]
+            along = arc_length(curve)
+            places.append(interpolate(np.array([share * along[-1]]), along, curve)[0])
+            lengths.append(tuple(share * each for each in fit.together))
+        words = " / ".join(f"{number(one, 1)} | {number(two, 1)}" for one, two in lengths)
+        return Walked(np.array(places).reshape(-1, 3), f"{words} mm" if words else "")
+
+
+def _original(block: Block) -> Block | None:
+    return next((each for each in built_in_blocks() if each.name == block.name), None)
+
+
+def _both(piece: str) -> str:
+    return piece_title(piece.removesuffix(" left").removesuffix(" right"))

@@ -1,0 +1,134 @@
+"""Pieces of the shown body, made beside the window: the newest shape counts, and what has not changed stays."""
+
+from __future__ import annotations
+
+import operator
+import threading
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from PySide6.QtCore import QObject, Signal
+
+from app.gui.session.jobs import Job, Jobs
+from app.i18n.catalog import tr
+from core.document.block import Block
+from core.document.garment_pattern import GarmentPattern
+from core.geometry.mesh import Points
+from core.pattern.cloth_library import built_in
+from core.pattern.garment import CutGarment, Pattern, cut_garment
+from core.pattern.places import BodyPlaces
+from core.pattern.seam_curves import SeamDrawing
+from core.pattern.seam_matching import Matched
+from core.pipeline.frame import Frame
+from core.progress import Progress
+
+
+@dataclass(frozen=True, eq=False)
+class PatternRequest:
+    """Pieces wanted of a ``frame`` by a ``plan``; those that are not ``final`` start near the last ones."""
+
+    frame: Frame
+    plan: GarmentPattern
+    final: bool
+
+
+@dataclass(frozen=True, eq=False)
+class PatternResult:
+    """The ``pattern`` of a request, and the ``drawing`` that its seams were drawn with."""
+
+    request: PatternRequest
+    pattern: Pattern
+    drawing: SeamDrawing
+
+
+def worn_skin(frame: Frame) -> Points:
+    """Return the vertices of the shown body without the noise of the scanner, (n, 3) [mm]."""
+    body, moving = frame.stages.body, frame.stages.skin.vertices
+    worn = np.array(body.smoothed.vertices)
+    worn[moving] += frame.points - body.mesh.vertices[moving]
+    return worn
+
+
+class PatternWorker(QObject):
+    """Makes one pattern at a time. ``made`` carries a PatternResult, ``refused`` a request and why not."""
+
+    made = Signal(object)
+    refused = Signal(object, object)
+
+    def __init__(self, jobs: Jobs, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._jobs = jobs
+        self._job: Job | None = None
+        self._at: PatternRequest | None = None
+        self._wanted: PatternRequest | None = None
+        self._drawing: SeamDrawing | None = None
+        self._parts: tuple[object, ...] = ()  # that it draws by
+        self._garment: CutGarment | None = None
+        self._matched: Matched | None = None
+        self._turn = threading.Lock()  # a job that was cancelled ends only when its pattern is made
+
+    @property
+    def at_work(self) -> bool:
+        """Return whether the newest pattern is not made yet."""
+        return self._wanted is not None
+
+    def ask(self, request: PatternRequest) -> None:
+        """Make this pattern next."""
+        self._wanted = request
+        if self._at is None:
+            self._begin()
+
+    def stop(self) -> None:
+        """Drop what is wanted, and what was kept for the next pattern."""
+        self._jobs.cancel(self._job)
+        self._job = self._at = self._wanted = None
+        self._drawing = self._garment = self._matched = None
+
+    def _begin(self) -> None:
+        self._at = request = self._wanted
+        if request is not None:
+            end = partial(self._end, request)
+            self._job = self._jobs.run(
+                tr("Computing pattern pieces…"), partial(self._make, request), end, end
+            )
+
+    def _end(self, request: PatternRequest, outcome: object) -> None:
+        self._at = None
+        if request is self._wanted:
+            self._wanted = None
+        if isinstance(outcome, Exception):
+            self.refused.emit(request, outcome)
+        else:
+            self.made.emit(outcome)
+        if self._wanted is not None and self._at is None:
+            self._begin()
+
+    def _make(self, request: PatternRequest, progress: Progress) -> PatternResult:
+        """Make a pattern, in a thread of its own."""
+        with self._turn:
+            drawing = self._drawing_of(request.frame)
+            garment = self._garment_of(drawing, request.plan.block)
+            cloths = {cloth.name: cloth for cloth in (*built_in(), *request.plan.cloths)}
+            former = None if request.final else self._matched
+            pattern = garment.flat(worn_skin(request.frame), cloths, former)
+            self._matched = pattern.matched
+            return PatternResult(request, pattern, drawing)
+
+    def _drawing_of(self, frame: Frame) -> SeamDrawing:
+        """Return what draws on the body at rest of a frame; it is kept while body and marks are the same."""
+        stages = frame.stages
+        lower = () if stages.lower is None else (stages.lower.landmarks,)
+        parts = (stages.body, stages.landmarks, *(each.fitted for each in stages.regions), *lower)
+        same = len(parts) == len(self._parts) and all(map(operator.is_, parts, self._parts))
+        if self._drawing is None or not same:
+            self._drawing, self._parts = SeamDrawing(BodyPlaces.of(stages)), parts
+            self._garment = self._matched = None
+        return self._drawing
+
+    def _garment_of(self, drawing: SeamDrawing, block: Block) -> CutGarment:
+        known = self._garment
+        if known is None or known.block != block:
+            self._garment, self._matched = cut_garment(drawing, block), None
+        assert self._garment is not None
+        return self._garment

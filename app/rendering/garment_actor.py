@@ -1,0 +1,135 @@
+"""A garment on the body: panels in the colours of their strain, seams, and what is selected of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pyvista as pv
+
+from app.rendering.actors import smooth_actor
+from app.rendering.vertex_colors import Colours
+from core.geometry.mesh import Faces, Mesh, Points
+
+SEAM = {False: "#1C1B1A", True: "#F4F2EF"}
+"""Colour of seams in the light and in the dark theme."""
+
+SELECTED = {False: "#2459CF", True: "#8DB0FF"}
+"""Colour of a selected seam and of its places."""
+
+_OFF = 0.8  # how far cloth and seams are drawn off the skin [mm]
+_THIN, _THICK = 1.6, 4.0  # a seam and a selected one [px]
+_POINT = 11.0  # the place of a seam [px]
+_NEARER = -60.0  # about 2 mm: seams are drawn over the cloth that they lie on
+
+
+@dataclass(frozen=True, eq=False)
+class GarmentDrawing:
+    """What is drawn: ``points`` (n, 3) [mm], ``faces`` (m, 3) and ``colours`` (n, 3) of all panels together.
+
+    ``seams`` are drawn thin and ``selected`` ones thick, each (k, 3) [mm]; ``handles`` (h, 3) [mm] are places
+    that can be dragged, ``knob`` (0 or 1, 3) [mm] the place where a seam is walked.
+    """
+
+    points: Points
+    faces: Faces
+    colours: Colours
+    seams: Sequence[Points]
+    selected: Sequence[Points]
+    handles: Points
+    knob: Points
+
+
+class GarmentActor:
+    """A garment on one plotter; nothing is drawn until it is shown."""
+
+    def __init__(self, plotter: pv.BasePlotter, pixel_ratio: float = 1.0) -> None:
+        self._plotter, self._ratio = plotter, pixel_ratio
+        self._dark = False
+        self._faces: Faces | None = None
+        self._sheet: pv.PolyData | None = None
+        self._names: list[str] = []
+
+    @property
+    def is_shown(self) -> bool:
+        """Return whether there is a garment."""
+        return bool(self._names)
+
+    def show(self, drawn: GarmentDrawing) -> None:
+        """Show a garment in place of the former one."""
+        normals = Mesh(drawn.points, drawn.faces).vertex_normals
+        self._lay(drawn, normals)
+        for name in self._names[1:]:
+            self._plotter.remove_actor(name, reset_camera=False, render=False)
+        self._names = self._names[:1]
+        self._lines("garment seams", drawn.seams, _THIN, SEAM[self._dark])
+        self._lines("garment selected", drawn.selected, _THICK, SELECTED[self._dark])
+        self._dots("garment handles", drawn.handles, "#FFFFFF")
+        self._dots("garment knob", drawn.knob, SELECTED[self._dark])
+
+    def clear(self) -> None:
+        """Remove the garment."""
+        for name in self._names:
+            self._plotter.remove_actor(name, reset_camera=False, render=False)
+        self._names, self._faces, self._sheet = [], None, None
+
+    def set_dark(self, dark: bool) -> None:
+        """Paint for one theme from the next showing on."""
+        self._dark = dark
+
+    def _lay(self, drawn: GarmentDrawing, normals: Points) -> None:
+        places = drawn.points + _OFF * normals
+        if self._faces is not drawn.faces or self._sheet is None:
+            look = {"ambient": 0.45, "diffuse": 0.6, "specular": 0.05}
+            self._sheet, _ = smooth_actor(
+                self._plotter, "garment cloth", places, normals, drawn.faces, **look
+            )
+            self._faces = drawn.faces
+            self._names = ["garment cloth", *self._names[1:]]
+        else:
+            self._sheet.points[:] = places
+            self._sheet.point_data["Normals"][:] = normals
+            self._sheet.GetPoints().Modified()
+        self._sheet.point_data["Colour"][:] = drawn.colours
+        self._sheet.Modified()
+
+    def _lines(self, name: str, curves: Sequence[Points], width: float, colour: str) -> None:
+        curves = [curve for curve in curves if len(curve) > 1]
+        if not curves:
+            return
+        starts = np.cumsum([0, *map(len, curves)])
+        cells = [np.r_[len(c), np.arange(a, a + len(c))] for c, a in zip(curves, starts, strict=False)]
+        data = pv.PolyData(np.concatenate(curves).astype(np.float32), lines=np.concatenate(cells))
+        actor = self._add(name, data, color=colour, line_width=width * self._ratio)
+        actor.mapper.SetResolveCoincidentTopologyToPolygonOffset()
+        actor.mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0.0, _NEARER)
+
+    def _dots(self, name: str, places: Points, colour: str) -> None:
+        if not len(places):
+            return
+        rim = self._add(
+            f"{name} rim",
+            pv.PolyData(places.astype(np.float32)),
+            color=SELECTED[self._dark],
+            point_size=(_POINT + 4.0) * self._ratio,
+            render_points_as_spheres=True,
+        )
+        dot = self._add(
+            name,
+            pv.PolyData(places.astype(np.float32)),
+            color=colour,
+            point_size=_POINT * self._ratio,
+            render_points_as_spheres=True,
+        )
+        for actor, nearer in ((rim, _NEARER - 6.0), (dot, _NEARER - 12.0)):
+            actor.mapper.SetResolveCoincidentTopologyToPolygonOffset()
+            actor.mapper.SetRelativeCoincidentTopologyPointOffsetParameter(nearer)
+
+    def _add(self, name: str, data: pv.PolyData, **look: object) -> pv.Actor:
+        self._names.append(name)
+        actor = self._plotter.add_mesh(
+            data, name=name, lighting=False, reset_camera=False, render=False, **look
+        )
+        actor.SetPickable(False)
+        return actor
