@@ -171,7 +171,8 @@ def _arrow(free: BaseGeometry, way: Floats, near: Floats, longest: float) -> Flo
     across = np.array([-way[1], way[0]])
     middle = np.array([left + right, low + top]) / 2.0
     best, score = np.array([middle, middle]), -np.inf
-    for shift in np.arange(-0.5 * reach, 0.5 * reach + 1e-9, _STEP):
+    count = int(0.5 * reach / _STEP)
+    for shift in _STEP * np.arange(-count, count + 1):  # a narrow strip has room in its middle only
         centre = middle + shift * across
         beam = shapely.LineString([centre - reach * way, centre + reach * way]).intersection(free)
         for part in shapely.get_parts(beam):

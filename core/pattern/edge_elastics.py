@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -13,11 +14,11 @@ from core.geometry.plane_sections import arc_length
 from core.pattern.garment import Pattern, without_side
 from core.pattern.piece import EdgeElastic, SideKey
 
-QUARTERS = (0.25, 0.5, 0.75)
+QUARTERS = (0.0, 0.25, 0.5, 0.75)
 """Where an elastic is marked, and the edges that carry it: shares of both that meet."""
 
-AT_CORNER = 3.0
-"""A mark that is nearer to the end of an edge is left out: the seam there is one [mm]."""
+AT_SEAM = 3.0
+"""A mark that is nearer to a seam, or to an end of the elastic, is left out: that marks it already [mm]."""
 
 _SAME_PLACE = 1.0
 """Ends of edges that are nearer to each other are one place of the body [mm]."""
@@ -35,6 +36,17 @@ class _Edge:
     def worn(self) -> Floats:
         """Return how far each point is along the edge on the body, (k,) [mm]."""
         return arc_length(self.places)
+
+    def mark(self, share: float, seams: Sequence[bool]) -> float | None:
+        """Return where on the piece a share of the length on the body lies, as a share of the edge [1].
+
+        ``seams`` tell whether it begins and ends at one, where no mark is needed: None for one there.
+        """
+        at = float(np.interp(share * self.worn[-1], self.worn, self.along))
+        length = float(self.along[-1])
+        if (seams[0] and at < AT_SEAM) or (seams[1] and length - at < AT_SEAM):
+            return None
+        return at / length
 
 
 def edge_elastics(pattern: Pattern, cuts: CutList) -> dict[SideKey, EdgeElastic]:
@@ -93,17 +105,22 @@ def _in_order(edges: Sequence[_Edge]) -> list[_Edge]:
 
 def _shared_out(line: str, row: CutRow, edges: Sequence[_Edge]) -> Iterator[tuple[SideKey, EdgeElastic]]:
     """Yield what each of the ``edges`` of one elastic, in their order, carries of it."""
-    bounds = np.cumsum([0.0, *(each.worn[-1] for each in edges)])
+    along = np.cumsum([0.0, *(each.worn[-1] for each in edges)])
+    bounds = (along / along[-1]).tolist()
     whole = None if row.cut_mm is None or row.front_only else row.cut_mm
     set_on = None if whole is None else whole - (row.allowance_mm or 0.0)
-    for edge, low, high in zip(edges, bounds[:-1], bounds[1:], strict=True):
-        start, end = float(low / bounds[-1]), float(high / bounds[-1])
+    seams = _seams(edges)
+    for k, edge in enumerate(edges):
+        start, end = bounds[k : k + 2]
+        shares = [(share - start) / (end - start) for share in QUARTERS if start <= share < end]
+        marks = tuple(at for each in shares if (at := edge.mark(each, seams[k : k + 2])) is not None)
         part = None if set_on is None else (end - start) * set_on
-        on_piece = [
-            float(np.interp(share * bounds[-1] - low, edge.worn, edge.along))
-            for share in QUARTERS
-            if low < share * bounds[-1] < high
-        ]
-        length = float(edge.along[-1])
-        marks = tuple(at / length for at in on_piece if AT_CORNER <= at <= length - AT_CORNER)
         yield edge.key, EdgeElastic(line, row.elastic, row.width_mm, whole, part, start, end, marks)
+
+
+def _seams(edges: Sequence[_Edge]) -> list[bool]:
+    """Return whether there is a seam, or an end of all, at the beginning of each edge and after the last."""
+    panels = [each.key[0] for each in edges]
+    is_open = float(np.linalg.norm(edges[-1].places[-1] - edges[0].places[0])) > _SAME_PLACE
+    ends = is_open or panels[0] != panels[-1]
+    return [ends, *(one != other for one, other in pairwise(panels)), ends]
