@@ -22,6 +22,7 @@ from core.garment.presets import built_in as presets  # noqa: E402
 from core.landmarks.types import ALL_NAMES, SIDES  # noqa: E402
 from core.mechanics.options import CHOICES, RANGES  # noqa: E402
 from core.messages import LandmarkName, SettingName, SideName  # noqa: E402
+from core.pattern.block_library import built_in_blocks  # noqa: E402
 from core.pattern.cloth_library import built_in as cloths  # noqa: E402
 from core.scan.orientation.unit_detection import MILLIMETRES  # noqa: E402
 
@@ -71,6 +72,10 @@ def texts_of_data() -> Iterator[Text]:
         yield from (("elastic", kind, ""), ("elastic", elastic.source, ""))
     for cloth in cloths():
         yield from (("cloth", cloth.title, ""), ("cloth", cloth.source, ""))
+    for block in built_in_blocks():
+        yield ("block", block.title, "")
+        yield from (("piece", panel.name, "") for panel in block.panels)
+        yield from (("seam", seam.name, "") for seam in block.seams)
     for preset in presets():
         yield from (("preset", each, "") for each in (preset.title, preset.leaves_out) if each)
     named = (*map(LandmarkName, ALL_NAMES), *map(SideName, SIDES))

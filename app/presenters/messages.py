@@ -10,7 +10,17 @@ from app.i18n.lengths import length, length_number, width
 from core.document.design import Design
 from core.garment.elastic_library import built_in
 from core.garment.presets import Preset
-from core.messages import ElasticName, Length, LengthRange, LineName, Message, Name, Parameter
+from core.messages import (
+    ElasticName,
+    Length,
+    LengthRange,
+    LineName,
+    Message,
+    Name,
+    Parameter,
+    PieceName,
+    SeamName,
+)
 
 Text = Message | str
 """A message, or a text that is in the language in use."""
@@ -54,6 +64,10 @@ def _text(value: Parameter, design: Design | None) -> str:
             text = _line(value, design)
         case ElasticName(name):
             text = elastic_title(name)
+        case PieceName() | SeamName():
+            kind = kind_of(value.text)
+            title = tr_context(value.context, kind)
+            text = value.text if title == kind else _with_side(title, value.text)
         case Name():
             text = tr_context(value.context, str(value))
         case int():
@@ -133,6 +147,12 @@ def kind_of(name: str) -> str:
 def side_of(name: str) -> str:
     """Return the side of a line in words; empty for one that is not one of a pair."""
     return {"left": tr("left"), "right": tr("right")}.get(name[len(kind_of(name)) + 1 :], "")
+
+
+def sided_title(name: PieceName | SeamName) -> str:
+    """Return the title of a piece or seam of a block, with its side; one of the user's own keeps its name."""
+    title = _with_side(tr_context(name.context, kind_of(name.text)), name.text)
+    return title[:1].upper() + title[1:]
 
 
 def _with_side(title: str, name: str) -> str:

@@ -34,6 +34,10 @@ SEAM_COLUMNS = (
     "allowance_mm",
     "notches",
     "notches_at_mm",
+    "elastic_of_line",
+    "elastic",
+    "elastic_cut_mm",
+    "elastic_part_mm",
 )
 
 
@@ -65,7 +69,8 @@ def _piece_row(piece: Piece) -> tuple[object, ...]:
 
 
 def _seam_row(piece: Piece, number: int, side: Side, sewn: float | None) -> tuple[object, ...]:
-    partner = side.partner
+    partner, elastic = side.partner, side.elastic
+    carried = (elastic.line, elastic.elastic, elastic.cut_mm, elastic.part_mm) if elastic else (None,) * 4
     return (
         piece.name,
         piece.side,
@@ -79,4 +84,5 @@ def _seam_row(piece: Piece, number: int, side: Side, sewn: float | None) -> tupl
         side.allowance,
         len(side.notches),
         tuple(round(share * side.length, 1) for share in side.notches),
+        *carried,
     )

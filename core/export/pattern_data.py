@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
-from core.landmarks.types import SIDES
-from core.pattern.garment import Pattern
+from core.messages import Message
+from core.pattern.garment import Pattern, without_side
+from core.pattern.piece import NO_ELASTICS, EdgeElastic, SideKey
 
 
-def pattern_values(pattern: Pattern) -> dict[str, Any]:
-    """Return block, pieces and seams of a pattern, and whether all fit their cloths, ready for JSON."""
+def pattern_values(pattern: Pattern, elastics: Mapping[SideKey, EdgeElastic] = NO_ELASTICS) -> dict[str, Any]:
+    """Return block, pieces, seams and elastics of edges, and whether all fit their cloths, ready for JSON."""
     return {
         "block": pattern.garment.block.name,
         "pieces": piece_values(pattern),
         "seams": seam_values(pattern),
+        "elastics": elastic_values(pattern, elastics),
         "fits": pattern.fits_cloths,
     }
 
@@ -23,16 +26,18 @@ def piece_values(pattern: Pattern) -> list[dict[str, Any]]:
     values = []
     for flat in pattern.flats:
         name, cloth = flat.panel.name, pattern.cloths[flat.panel.cloth]
-        side = next((each for each in SIDES if name.endswith(f" {each}")), "")
+        plain, side = without_side(name)
         values.append(
             {
-                "name": name.removesuffix(f" {side}"),
+                "name": plain,
                 "side": side,
                 "cloth": cloth.name,
                 "area_mm2": float(flat.areas.sum()),
                 "strain_p95_percent": 100.0 * pattern.strains[name].within,
                 "limit_percent": 100.0 * cloth.limit,
                 "fits": pattern.fits(flat),
+                "reason": _said(pattern.problem(flat)),
+                "note": _said(pattern.note(flat)),
             }
         )
     return values
@@ -48,7 +53,33 @@ def seam_values(pattern: Pattern) -> list[dict[str, Any]]:
             "on_body_mm": pattern.seam_length(fit),
             "lengths_mm": list(fit.together),
             "ratio": fit.seam.ratio,
+            "alone_mm": list(fit.alone),
             "misfit_alone_percent": 100.0 * fit.misfit,
+            "note": _said(pattern.seam_problem(fit) or pattern.seam_note(fit)),
         }
         for fit in pattern.matched.fits
     ]
+
+
+def elastic_values(pattern: Pattern, elastics: Mapping[SideKey, EdgeElastic]) -> list[dict[str, Any]]:
+    """Return what is known of each edge that carries the elastic of a worn line."""
+    flats = {flat.panel.name: flat for flat in pattern.flats}
+    return [
+        {
+            "piece": piece,
+            "edge": flats[piece].panel.sides[number].name,
+            "edge_mm": flats[piece].side_length(number),
+            "line": each.line,
+            "elastic": each.elastic,
+            "width_mm": each.width_mm,
+            "cut_mm": each.cut_mm,
+            "part_mm": each.part_mm,
+            "quarter_mm": each.quarter_mm,
+            "marks_at_mm": [share * flats[piece].side_length(number) for share in each.marks],
+        }
+        for (piece, number), each in elastics.items()
+    ]
+
+
+def _said(message: Message | None) -> str:
+    return "" if message is None else str(message)

@@ -28,6 +28,7 @@ CLOSED = 0.5
 """Gaps of twice this width between the allowances of two sides are cut as one [mm]."""
 
 _GRID = 1e-6  # of unions [mm]: without one they lose parts of shapes that nearly touch
+_SAME = 1e-3  # from the cut line to points of it that are left out at most [mm]
 _SLANTED = float(np.radians(70.0))  # beyond it the end of a wide allowance is no step but a corner
 _LEAST_MARK = 2.0  # of a notch where there is no allowance [mm]
 _DEPTH = 4.0  # from the cut line inward [mm]
@@ -73,12 +74,16 @@ def sew_shape(piece: Piece) -> shapely.Polygon:
 
 def _cut_shape(piece: Piece) -> shapely.Polygon:
     strips = [shapely.convex_hull(shapely.MultiPoint(each)) for each in _strips(piece)]
-    parts = [sew_shape(piece), *(each for each in strips if shapely.get_dimensions(each) == 2)]
+    sewn = sew_shape(piece)
+    parts = [sewn, *(each for each in strips if shapely.get_dimensions(each) == 2)]
     whole = shapely.union_all(parts, grid_size=_GRID)
     # Strips that only touch leave hair cracks, through which the cut line would come to the sew line.
     style = {"join_style": "mitre", "mitre_limit": 5.0}
     closed = shapely.union(whole.buffer(CLOSED, **style).buffer(-CLOSED, **style), whole, grid_size=_GRID)
-    return shapely.Polygon(_largest(closed).exterior).simplify(0.001)
+    cut = shapely.Polygon(_largest(closed).exterior).simplify(_SAME)
+    # Leaving points out cuts corners off, also of a sew line without allowance, where each has to stay.
+    whole = shapely.union(cut, sewn, grid_size=_GRID)
+    return shapely.Polygon(_largest(whole).exterior).simplify(_GRID)
 
 
 def _largest(shape: BaseGeometry) -> shapely.Polygon:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,9 +12,9 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from core.geometry.mesh import Floats
-from core.messages import ClothName, Message, SideName
+from core.messages import ClothName, Length, LineName, Message, PieceName, SideName
 from core.pattern.allowance import CutPiece, sew_shape
-from core.pattern.piece import BOTH, Piece
+from core.pattern.piece import BOTH, EdgeElastic, Piece
 
 Say = Callable[[Message], str]
 """Returns a message as it is to be written."""
@@ -62,16 +62,38 @@ class Annotation:
 
 
 def piece_words(piece: Piece, say: Say = str, about: Sequence[str] = ()) -> tuple[str, ...]:
-    """Return the words on a piece: name, cloth, number, and what stands on all pieces (``about``)."""
-    named = Message("{name}, {side}", name=piece.name, side=SideName(piece.side))
-    title = piece.name if piece.side in ("", BOTH) else say(named)
+    """Return the words on a piece: name, cloth, number, elastics, and what is on all pieces (``about``)."""
+    name = PieceName(piece.name)
+    alone = Message("{name}", name=name)
+    named = Message("{name}, {side}", name=name, side=SideName(piece.side))
+    title = say(alone if piece.side in ("", BOTH) else named)
     count = (
         Message("cut {count}, mirrored", count=piece.count)
         if piece.side == BOTH
         else Message("cut {count}", count=piece.count)
     )
     cloth = Message("{cloth}", cloth=ClothName(piece.cloth))
-    return (title[:1].upper() + title[1:], say(cloth), say(count), *(each for each in about if each))
+    carried = map(say, _elastic_words([each for side in piece.sides if (each := side.elastic)]))
+    return (title[:1].upper() + title[1:], say(cloth), say(count), *carried, *filter(None, about))
+
+
+def elastic_words(line: str, part: float | None, whole: float | None) -> Message:
+    """Return what is said of an elastic, of which a ``part`` lies on edges and the ``whole`` is cut [mm]."""
+    if part is None or whole is None:
+        return Message("{line}: elastic, length not known", line=LineName(line))
+    return Message(
+        "{line}: elastic, {part} of {whole} to cut",
+        line=LineName(line),
+        part=Length(part),
+        whole=Length(whole),
+    )
+
+
+def _elastic_words(elastics: Sequence[EdgeElastic]) -> Iterator[Message]:
+    """Yield what is said of each elastic on a piece, of which it may carry parts on several edges."""
+    for line in dict.fromkeys(each.line for each in elastics):
+        own = [each for each in elastics if each.line == line]
+        yield elastic_words(line, sum(each.part_mm or 0.0 for each in own) or None, own[0].cut_mm)
 
 
 def annotate(cut: CutPiece, lines: Sequence[str]) -> Annotation:
@@ -149,7 +171,8 @@ def _arrow(free: BaseGeometry, way: Floats, near: Floats, longest: float) -> Flo
     across = np.array([-way[1], way[0]])
     middle = np.array([left + right, low + top]) / 2.0
     best, score = np.array([middle, middle]), -np.inf
-    for shift in np.arange(-0.5 * reach, 0.5 * reach + 1e-9, _STEP):
+    count = int(0.5 * reach / _STEP)
+    for shift in _STEP * np.arange(-count, count + 1):  # a narrow strip has room in its middle only
         centre = middle + shift * across
         beam = shapely.LineString([centre - reach * way, centre + reach * way]).intersection(free)
         for part in shapely.get_parts(beam):

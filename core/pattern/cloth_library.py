@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
+from dataclasses import replace
 from functools import cache
 from importlib import resources
 from typing import Any
 
 from core.document.cloth import MOST_STRETCH, Cloth, Pair
+from core.document.garment_pattern import GarmentPattern
 from core.errors import PatternError
 from core.files.table_text import best_names
-from core.messages import ClothName, Length, Message
+from core.messages import ClothName, Length, Message, PieceName
 
 FORMAT = 1
 """The format of the files in ``resources/cloths``."""
@@ -92,6 +95,51 @@ def find_cloth(text: str, cloths: tuple[Cloth, ...] = ()) -> Cloth:
         else Message("No cloth matches '{text}'.", text=text),
         Message("Choose one of: {choices}.", choices=tuple(ClothName(each.title) for each in shown)),
     )
+
+
+def cloths_of(plan: GarmentPattern) -> Mapping[str, Cloth]:
+    """Return all cloths of a pattern by name: its own take the place of those of the program.
+
+    Raises PatternError where a piece of its block is of none of them.
+    """
+    cloths = {each.name: each for each in (*built_in(), *plan.cloths)}
+    for panel in plan.block.panels:
+        if panel.cloth not in cloths:
+            raise PatternError(
+                Message(
+                    "The cloth '{cloth}' of {piece} is not known.",
+                    cloth=panel.cloth,
+                    piece=PieceName(panel.name),
+                ),
+                Message(
+                    "Choose one of: {choices}.",
+                    choices=tuple(ClothName(each.title) for each in cloths.values()),
+                ),
+            )
+    return cloths
+
+
+ALL_PIECES = "all"
+"""In place of the name of a piece: each of them."""
+
+
+def with_cloth(plan: GarmentPattern, piece: str, cloth: Cloth) -> GarmentPattern:
+    """Return a pattern with a ``piece``, named without its side, or ``ALL_PIECES``, of another cloth.
+
+    Raises PatternError for a piece that the block does not have.
+    """
+    names = [panel.name for panel in plan.block.panels]
+    if piece not in (ALL_PIECES, *names):
+        raise PatternError(
+            Message("There is no piece '{piece}'.", piece=piece),
+            Message("Choose one of: {choices}.", choices=(ALL_PIECES, *map(PieceName, names))),
+        )
+    panels = tuple(
+        replace(panel, cloth=cloth.name) if piece in (ALL_PIECES, panel.name) else panel
+        for panel in plan.block.panels
+    )
+    own = {each.name: each for each in plan.cloths} | ({} if cloth in built_in() else {cloth.name: cloth})
+    return replace(plan, block=replace(plan.block, panels=panels), cloths=tuple(own.values()))
 
 
 def _cloth_of(values: dict[str, Any]) -> Cloth:

@@ -8,19 +8,32 @@ from functools import cached_property
 
 import numpy as np
 
-from core.document.block import Block
+from core.document.block import Block, Seam
 from core.document.cloth import Cloth
-from core.document.garment_pattern import ALLOWANCE
+from core.document.garment_pattern import ALLOWANCE, GarmentPattern
 from core.geometry.mesh import Points
 from core.landmarks.types import SIDES
+from core.messages import ClothName, Length, Message, PieceName, SeamName
+from core.pattern.cloth_library import cloths_of
 from core.pattern.flattening import FlatPanel, StrainSummary, strain_summary
 from core.pattern.notches import notched
 from core.pattern.panel import Panel, PanelSeed, cut_panels
-from core.pattern.piece import Piece, Side, merge_mirrored
+from core.pattern.piece import NO_ELASTICS, EdgeElastic, Piece, Side, SideKey, merge_mirrored
+from core.pattern.places import BodyPlaces
 from core.pattern.seam_curves import SeamCurve, SeamDrawing
 from core.pattern.seam_matching import Matched, SeamFit, match, seams_of
 from core.pattern.surface_cut import cut_surface
 from core.pattern.surface_trace import SurfaceCurve
+from core.pipeline.build import Stages
+
+SEWN = 0.05
+"""By how much the sides of a seam may differ when all pieces are matched [mm]."""
+
+MISFIT = 0.03
+"""What a seam may differ by when its pieces are flattened alone, before it is told [1]. Source: ours."""
+
+LOOSE, LOOSE_AREA = -0.02, 0.05
+"""Cloth bags where its stretch with ease is below the first on more of a piece than the second [1]: ours."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +54,13 @@ class CutGarment:
         return Pattern(
             self, match(self.panels, places, own, seams_of(self.panels), former), tuple(places), cloths
         )
+
+    def seam_of(self, name: str) -> Seam | None:
+        """Return the seam of the block of this name, with or without its side; None if there is none."""
+        try:
+            return self.block.seam(name)
+        except KeyError:
+            return None
 
 
 def cut_garment(drawing: SeamDrawing, block: Block) -> CutGarment:
@@ -67,6 +87,22 @@ def _seeds(drawing: SeamDrawing, block: Block, curves: Sequence[SeamCurve]) -> l
     ]
 
 
+def pattern_of(stages: Stages, worn_vertices: Points, plan: GarmentPattern) -> Pattern:
+    """Return the pattern of a design on its reshaped body, whose vertices (n, 3) [mm] are given.
+
+    Raises PatternError, LineError for a body or cloths that the block does not fit.
+    """
+    cloths = cloths_of(plan)
+    garment = cut_garment(SeamDrawing(BodyPlaces.of(stages)), plan.block)
+    return garment.flat(worn_skin(stages, worn_vertices), cloths)
+
+
+def worn_skin(stages: Stages, worn_vertices: Points) -> Points:
+    """Return the vertices of a reshaped body without the noise of the scanner, (n, 3) [mm]."""
+    body = stages.body
+    return np.asarray(body.smoothed.vertices + worn_vertices - body.mesh.vertices)
+
+
 @dataclass(frozen=True, eq=False)
 class Pattern:
     """The panels of a garment laid flat together; ``places`` are those of their points on the body [mm]."""
@@ -88,37 +124,102 @@ class Pattern:
             flat.panel.name: strain_summary(flat, self.cloths[flat.panel.cloth].limit) for flat in self.flats
         }
 
+    def problem(self, flat: FlatPanel) -> Message | None:
+        """Return why a piece cannot be cut and sewn as it is, None if it can.
+
+        It must lie flat, its cloth take up its strain on 95 % of its area, and its seams agree.
+        """
+        cloth, within = self.cloths[flat.panel.cloth], self.strains[flat.panel.name].within
+        if flat.is_folded:
+            return Message("Cannot be laid flat without a fold.")
+        if flat.overlaps:
+            return Message("Overlaps itself when laid flat.")
+        if within > cloth.limit:
+            return Message(
+                "Strain of {strain} % on 95 % of the area; {cloth} takes up {limit} %.",
+                strain=f"{100.0 * within:.1f}",
+                cloth=ClothName(cloth.title),
+                limit=f"{100.0 * cloth.limit:g}",
+            )
+        return next(filter(None, map(self.seam_problem, self._seams_of(flat))), None)
+
+    def seam_problem(self, fit: SeamFit) -> Message | None:
+        """Return why a seam cannot be sewn: its sides still differ when all pieces are matched. Else None."""
+        apart = abs(fit.together[0] - fit.seam.ratio * fit.together[1])
+        if apart <= SEWN:
+            return None
+        return Message(
+            "The sides of the {seam} differ by {difference}.",
+            seam=SeamName(fit.seam.name),
+            difference=Length(apart, 2),
+        )
+
+    def seam_note(self, fit: SeamFit) -> Message | None:
+        """Return which piece is longer at a seam before all are matched, None if it matters little."""
+        if abs(fit.misfit) <= MISFIT:
+            return None
+        longer, other = fit.seam.panels if fit.misfit > 0.0 else fit.seam.panels[::-1]
+        return Message(
+            "The {piece} is {difference} longer than the {other} before matching: ease it in, or add a seam.",
+            piece=PieceName(self.flats[longer].panel.name),
+            difference=Length(abs(fit.alone[0] - fit.seam.ratio * fit.alone[1]), 1),
+            other=PieceName(self.flats[other].panel.name),
+        )
+
+    def note(self, flat: FlatPanel) -> Message | None:
+        """Return where a piece bags because its cloth is not stretched when worn, None if it does not."""
+        loose = flat.areas / flat.areas.sum() @ (flat.totals < LOOSE)  # across and down
+        if loose.max() <= LOOSE_AREA:
+            return None
+        texts = (
+            Message("Bags across on {share} % of the area: choose a cloth with more ease."),
+            Message("Bags down on {share} % of the area: choose a cloth with more ease."),
+        )
+        return texts[int(loose.argmax())].fill(share=f"{100.0 * loose.max():.0f}")
+
     def fits(self, flat: FlatPanel) -> bool:
-        """Return whether a piece lies flat, and its cloth takes up its strain on 95 % of its area."""
-        cloth = self.cloths[flat.panel.cloth]
-        return not (flat.is_folded or flat.overlaps) and self.strains[flat.panel.name].within <= cloth.limit
+        """Return whether a piece can be cut and sewn as it is, see ``problem``."""
+        return self.problem(flat) is None
 
     @property
     def fits_cloths(self) -> bool:
-        """Return whether all pieces lie flat and fit their cloths."""
+        """Return whether all pieces and seams can be cut and sewn as they are."""
         return all(map(self.fits, self.flats))
+
+    def _seams_of(self, flat: FlatPanel) -> Sequence[SeamFit]:
+        names = [each.panel.name for each in self.flats]
+        return [fit for fit in self.matched.fits if names.index(flat.panel.name) in fit.seam.panels]
 
     def seam_length(self, fit: SeamFit) -> float:
         """Return the length of a seam on the body [mm]."""
         panel, points = fit.seam.panels[0], fit.seam.points[0]
         return float(np.linalg.norm(np.diff(self.places[panel][points], axis=0), axis=1).sum())
 
-    def pieces(self, allowance: float = ALLOWANCE) -> tuple[Piece, ...]:
-        """Return the pieces to cut, with notches and an ``allowance`` [mm]; equal left and right as one."""
-        return merge_mirrored(notched([self._piece(flat, allowance) for flat in self.flats]))
+    def pieces(
+        self, allowance: float = ALLOWANCE, elastics: Mapping[SideKey, EdgeElastic] = NO_ELASTICS
+    ) -> tuple[Piece, ...]:
+        """Return the pieces to cut, with notches and an ``allowance`` [mm]; equal left and right as one.
 
-    def _piece(self, flat: FlatPanel, allowance: float) -> Piece:
-        name, side = flat.panel.name, ""
-        for each in SIDES:
-            if name.endswith(f" {each}"):
-                name, side = name.removesuffix(f" {each}"), each
-        sides = tuple(
-            Side(_kind(own.name), flat.points[own.points], allowance, partner=own.partner)
-            for own in flat.panel.sides
-        )
-        return Piece(name, side, self.cloths[flat.panel.cloth].title, 1, sides)
+        Seams that have an allowance of their own keep it. ``elastics`` are those of edges, see
+        ``core.pattern.edge_elastics``.
+        """
+        return merge_mirrored(notched([self._piece(flat, allowance, elastics) for flat in self.flats]))
+
+    def _piece(self, flat: FlatPanel, allowance: float, elastics: Mapping[SideKey, EdgeElastic]) -> Piece:
+        panel = flat.panel
+        name, side = without_side(panel.name)
+        sides = []
+        for number, own in enumerate(panel.sides):
+            elastic = elastics.get((panel.name, number))
+            seam = self.garment.seam_of(own.name)
+            width = allowance if seam is None or seam.allowance is None else seam.allowance
+            notches = elastic.marks if elastic else ()
+            kind, points = without_side(own.name)[0], flat.points[own.points]
+            sides.append(Side(kind, points, width, notches, own.partner, elastic))
+        return Piece(name, side, self.cloths[panel.cloth].title, 1, tuple(sides))
 
 
-def _kind(name: str) -> str:
-    """Return the name of a seam without its side."""
-    return name.removesuffix(" left").removesuffix(" right")
+def without_side(name: str) -> tuple[str, str]:
+    """Return the name of a piece or seam without its side, and the side, "" for one over the middle."""
+    side = next((each for each in SIDES if name.endswith(f" {each}")), "")
+    return name.removesuffix(f" {side}"), side

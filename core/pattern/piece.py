@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 
 import numpy as np
 
@@ -24,6 +25,39 @@ SAME = 1.0
 BOTH = "both"
 """The side of a piece that is cut for both sides of the body, the right one mirrored."""
 
+
+@dataclass(frozen=True)
+class EdgeElastic:
+    """What an edge carries of an elastic of ``width_mm``: its share from ``start`` to ``end`` [1].
+
+    ``line`` is the worn line without its side, ``elastic`` is empty where none is chosen. ``cut_mm`` is its
+    length to cut, None where that is not known, ``part_mm`` what of it lies on this edge, without its own
+    seam allowance. ``marks`` are its quarters, as shares of the edge from its first point [1].
+    """
+
+    line: str
+    elastic: str
+    width_mm: float | None
+    cut_mm: float | None
+    part_mm: float | None
+    start: float
+    end: float
+    marks: tuple[float, ...] = ()
+
+    @property
+    def quarter_mm(self) -> float | None:
+        """Return how far its quarter marks are apart unstretched [mm], None where that is not known."""
+        return None if self.part_mm is None else 0.25 * self.part_mm / (self.end - self.start)
+
+    @property
+    def mirrored(self) -> EdgeElastic:
+        """Return it on the edge in the other direction."""
+        marks = tuple(1.0 - each for each in self.marks[::-1])
+        return replace(self, start=1.0 - self.end, end=1.0 - self.start, marks=marks)
+
+
+NO_ELASTICS: Mapping[SideKey, EdgeElastic] = MappingProxyType({})
+
 _OTHER = {"left": "right", "right": "left"}
 _SAME_GRAIN = float(np.cos(np.radians(3.0)))
 
@@ -36,7 +70,7 @@ class Side:
 
     ``points`` (k, 2) run counter-clockwise round the piece [mm]; its ends are shared with the neighbours.
     ``notches`` are shares of its length from its first point [1]. ``partner`` is the side that is sewn to it,
-    reversed; None for an edge.
+    reversed; None for an edge, which may carry an ``elastic``.
     """
 
     name: str
@@ -44,6 +78,7 @@ class Side:
     allowance: float
     notches: tuple[float, ...] = ()
     partner: SideKey | None = None
+    elastic: EdgeElastic | None = None
 
     @property
     def length(self) -> float:
@@ -123,7 +158,12 @@ def mirrored(piece: Piece) -> Piece:
     """Return the piece with its face down: x negative, sides in the other order."""
     flip = np.array([-1.0, 1.0])
     sides = tuple(
-        replace(each, points=(flip * each.points)[::-1], notches=tuple(1.0 - s for s in each.notches[::-1]))
+        replace(
+            each,
+            points=(flip * each.points)[::-1],
+            notches=tuple(1.0 - s for s in each.notches[::-1]),
+            elastic=each.elastic and each.elastic.mirrored,
+        )
         for each in piece.sides[::-1]
     )
     return replace(
@@ -190,13 +230,19 @@ def _matching_turn(piece: Piece, other: Piece, same_mm: float) -> int | None:
 
 
 def _like(one: Side, two: Side, same_mm: float) -> bool:
-    """Return whether two sides have one name, one allowance, and notches in the same places."""
-    if (one.name, one.allowance, len(one.notches)) != (two.name, two.allowance, len(two.notches)):
+    """Return whether two sides have one name, allowance and elastic, and notches in the same places."""
+    if _alike(one) != _alike(two):
         return False
     return all(
         abs(a - b) * one.length < same_mm
         for a, b in zip(sorted(one.notches), sorted(two.notches), strict=True)
     )
+
+
+def _alike(side: Side) -> tuple[object, ...]:
+    """Return what sides must have in common, beside places."""
+    elastic = side.elastic and (side.elastic.line, side.elastic.elastic)
+    return side.name, side.allowance, len(side.notches), elastic
 
 
 def _is_same(piece: Piece, other: Piece, same_mm: float) -> bool:

@@ -5,53 +5,86 @@ from __future__ import annotations
 import json
 import os
 from argparse import ArgumentParser, Namespace
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from datetime import date
 from pathlib import Path
-from typing import Any
-
-import numpy as np
 
 from app.cli.design import design_of
 from app.cli.options import add_lines, add_scan
 from app.cli.output import DONE, finish, table_lines
 from app.cli.solved_design import SolvedDesign, solve_design
+from app.presenters.messages import line_title
+from app.presenters.pattern import piece_rows, seam_rows
+from app.rendering.band import band_width
 from core import __version__
-from core.document.garment_pattern import ALLOWANCE
+from core.document.design import Design
+from core.document.garment_pattern import GarmentPattern
 from core.document.lower_trunk import LowerTrunk
 from core.errors import PatternError
 from core.export.pattern_csv import write_pieces, write_seams
-from core.export.pattern_data import pattern_values, piece_values, seam_values
+from core.export.pattern_data import pattern_values
 from core.export.pattern_dxf import write_pattern_dxf
 from core.export.pattern_plt import write_pattern_plt
+from core.export.pattern_strips import strip_pieces, uncut_strips
 from core.export.pattern_svg import write_pattern_svg
 from core.export.report_data import Heading
 from core.files.atomic_write import write_text
-from core.geometry.mesh import Points
+from core.garment.cut_list import CutList, cut_list_of
 from core.messages import Message
-from core.pattern.allowance import cut_piece
-from core.pattern.block_library import built_in_blocks, find_block
-from core.pattern.cloth_library import built_in
-from core.pattern.garment import Pattern, cut_garment
+from core.pattern.allowance import CutPiece, cut_piece
+from core.pattern.annotation import elastic_words
+from core.pattern.block_library import built_in_blocks, find_block, read_block, write_block
+from core.pattern.cloth_csv import read_cloth, write_template
+from core.pattern.cloth_library import ALL_PIECES, built_in, find_cloth, with_cloth
+from core.pattern.edge_elastics import edge_elastics, lines_on_edges
+from core.pattern.garment import Pattern, pattern_of
 from core.pattern.layout import PAPERS, Tiling, lay_out, lay_out_on_tiles, whole_sheet
-from core.pattern.places import BodyPlaces
-from core.pattern.seam_curves import SeamDrawing
+from core.pattern.piece import EdgeElastic, Piece, SideKey
 
 SHEET = "sheet"
 """One page that is as large as the layout."""
 
 _WIDTH = 1400.0  # of the cloth or paper that pieces are laid out on [mm]
-_FILES = ("dxf", "svg", "pdf", "plt", "pieces", "seams", "json")
+_FILES = ("dxf", "svg", "pdf", "plt", "pieces", "seams", "json", "save_block")
+
+
+@dataclass(frozen=True)
+class _Cut:
+    """A pattern with the ``pieces`` and ``strips`` to cut, and the ``elastics`` of its edges."""
+
+    plan: GarmentPattern
+    pattern: Pattern
+    solved: SolvedDesign
+    cuts: CutList
+    elastics: Mapping[SideKey, EdgeElastic]
+    pieces: tuple[Piece, ...]
+    strips: tuple[Piece, ...]
 
 
 def add_options(parser: ArgumentParser) -> None:
     """Add the options of ``busk pattern``."""
     parser.add_argument("--list", action="store_true", help="list blocks and cloths; no scan is read")
+    table = "write a table in which a cloth of your own is entered after a 10 cm test; no scan is read"
+    parser.add_argument("--save-cloth", metavar="FILE", help=table)
     add_scan(parser, required=False)
     add_lines(parser)
-    parser.add_argument("--block", metavar="NAME", help="garment block: see --list")
-    parser.add_argument("--allowance", type=float, default=ALLOWANCE, metavar="MM", help="seam allowance")
+    block = "garment block: see --list, or a file .json of your own (default: that of the project)"
+    parser.add_argument("--block", metavar="NAME", help=block)
+    parser.add_argument("--save-block", metavar="FILE", help="write the block as a file to be changed")
+    cloth = (
+        f"cloth of a piece, named without its side, or of '{ALL_PIECES}': one of the library or the project "
+        "by name or unique words ('wing=stretch lace'), or a table of your own ('wing=net.csv'); repeatable"
+    )
+    parser.add_argument("--cloth", action="append", metavar="PIECE=CLOTH", help=cloth)
+    allowance = "allowance of seams without their own (default: that of the project, or 7)"
+    parser.add_argument("--allowance", type=float, metavar="MM", help=allowance)
+    strips = "add straps and bands of the cut list as pieces, apart from elastics of edges"
+    parser.add_argument("--strips", action="store_true", help=strips)
+    _add_files(parser)
+
+
+def _add_files(parser: ArgumentParser) -> None:
     parser.add_argument("--dxf", metavar="FILE", help="output DXF, one block for each piece")
     parser.add_argument("--dxf-standard", choices=("aama", "astm"), default="aama", help="default: aama")
     parser.add_argument("--svg", metavar="FILE", help="output SVG 1:1, a named path for each side")
@@ -69,27 +102,61 @@ def run(options: Namespace) -> int:
     if options.list:
         print("\n".join(_listed()))
         return DONE
-    if not options.block or not options.input:
-        raise PatternError(
-            Message("A scan or project and a block are required."),
-            Message("Enter busk pattern SCAN --block NAME; busk pattern --list shows the blocks."),
-        )
-    block = find_block(options.block)
+    if options.save_cloth:
+        write_template(Path(options.save_cloth))
+        print(f"written to {options.save_cloth}")
+        return DONE
+    if not options.input:
+        raise _missing()
     design = design_of(options)
-    if block.needs_lower_trunk:
+    plan = _plan(options, design)
+    if plan.block.needs_lower_trunk:
         design = replace(design, lower=design.lower or LowerTrunk())
     solved = solve_design(design, options.line or [], options.elastic or [], bare=True)
-    garment = cut_garment(SeamDrawing(BodyPlaces.of(solved.solution.stages)), block)
-    pattern = garment.flat(_worn_skin(solved), {cloth.name: cloth for cloth in built_in()})
-    written = _write(pattern, solved, options)
-    lines = [*solved.verdict, "", *_text(pattern), *written]
-    return finish("\n".join(lines), solved.converged and pattern.fits_cloths, solved.warnings)
+    cut = _cut(plan, solved, strips=options.strips)
+    lines = [*solved.verdict, "", *_text(cut), *_write(cut, options)]
+    return finish("\n".join(lines), solved.converged and cut.pattern.fits_cloths, solved.warnings)
 
 
-def _worn_skin(solved: SolvedDesign) -> Points:
-    """Return the vertices of the reshaped body without the noise of the scanner, (n, 3) [mm]."""
-    body = solved.solution.stages.body
-    return np.asarray(body.smoothed.vertices + solved.solution.body.vertices - body.mesh.vertices)
+def _missing() -> PatternError:
+    return PatternError(
+        Message("A scan or project and a block are required."),
+        Message("Enter busk pattern SCAN --block NAME; busk pattern --list shows the blocks."),
+    )
+
+
+def _plan(options: Namespace, design: Design) -> GarmentPattern:
+    """Return what the pieces are cut by: the pattern of the design, changed by the options."""
+    plan, name = design.pattern, options.block
+    if name:
+        own = name.lower().endswith(".json")
+        block = read_block(Path(name)) if own else find_block(name)
+        plan = replace(plan, block=block) if plan else GarmentPattern(block)
+    if plan is None:
+        raise _missing()
+    for text in options.cloth or []:
+        piece, equals, wanted = (part.strip() for part in text.partition("="))
+        if not equals:
+            raise PatternError(
+                Message("'{text}' is not a piece and its cloth.", text=text),
+                Message("Enter PIECE=CLOTH, as in --cloth 'wing=stretch lace'."),
+            )
+        table = wanted.lower().endswith(".csv")
+        cloth = read_cloth(Path(wanted)) if table else find_cloth(wanted, plan.cloths)
+        plan = with_cloth(plan, piece, cloth)
+    return plan if options.allowance is None else replace(plan, allowance=options.allowance)
+
+
+def _cut(plan: GarmentPattern, solved: SolvedDesign, *, strips: bool) -> _Cut:
+    shown, design = solved.solution, solved.solution.stages.design
+    pattern = pattern_of(shown.stages, shown.body.vertices, plan)
+    cuts = cut_list_of(shown)
+    elastics = edge_elastics(pattern, cuts)
+    names = [row.line for row in cuts.rows]
+    titles = {name: line_title(name, design) for name in names}
+    widths = {name: band_width(name, design) for name in names}
+    straps = strip_pieces(shown, cuts, lines_on_edges(pattern, cuts), titles, widths) if strips else ()
+    return _Cut(plan, pattern, solved, cuts, elastics, pattern.pieces(plan.allowance, elastics), straps)
 
 
 def _listed() -> Iterator[str]:
@@ -100,46 +167,57 @@ def _listed() -> Iterator[str]:
     yield from table_lines([("cloth", "title", "limit %"), *cloths])
 
 
-def _text(pattern: Pattern) -> Iterator[str]:
+def _text(cut: _Cut) -> Iterator[str]:
+    pattern, pieces, seams = cut.pattern, piece_rows(cut.pattern), seam_rows(cut.pattern)
     rows = [("piece", "cloth", "area cm2", "strain %", "limit %", "")]
-    for piece in piece_values(pattern):
-        fits = "" if piece["fits"] else "more than its cloth takes up"
-        values = (piece["area_mm2"] / 100.0, piece["strain_p95_percent"], piece["limit_percent"])
-        rows.append((f"{piece['name']} {piece['side']}".rstrip(), piece["cloth"], *_rounded(values), fits))
+    for piece in pieces:
+        values = f"{piece.area_cm2:.0f}", f"{piece.strain_percent:.1f}", f"{piece.limit_percent:.0f}"
+        rows.append((piece.name, piece.cloth, *values, "" if piece.fits else "does not fit"))
     yield from table_lines(rows)
-    worst = max((abs(a - b) for a, b in (seam["lengths_mm"] for seam in seam_values(pattern))), default=0.0)
+    yield from (f"{each.title}: {said}" for each in pieces for said in (each.reason, each.note) if said)
+    yield from dict.fromkeys(f"{each.title}: {each.note}" for each in seams if each.note)
+    worst = max((abs(each.lengths_mm[0] - each.lengths_mm[1]) for each in seams), default=0.0)
     yield f"Seams agree within {worst:.2f} mm. Strain: of the worn piece beyond its ease, on 95 % of it."
     if not pattern.fits_cloths:
         yield "Add a seam or a dart, or choose a cloth that stretches further."
+    yield from _elastics(cut)
 
 
-def _rounded(values: tuple[float, float, float]) -> tuple[str, str, str]:
-    area, strain, limit = values
-    return f"{area:.0f}", f"{strain:.1f}", f"{limit:.0f}"
+def _elastics(cut: _Cut) -> Iterator[str]:
+    """Yield what is said of elastics on edges, and of strips."""
+    for (piece, number), each in cut.elastics.items():
+        flat = next(flat for flat in cut.pattern.flats if flat.panel.name == piece)
+        words = elastic_words(each.line, each.part_mm, each.cut_mm)
+        yield f"{piece}, {flat.panel.sides[number].name}: {words}"
+    if cut.strips:
+        yield from (f"Strip: {each.name}, {each.cloth}" for each in cut.strips)
+        on_edges = lines_on_edges(cut.pattern, cut.cuts)
+        yield from (f"No strip of {name}: busk cut says why." for name in uncut_strips(cut.cuts, on_edges))
 
 
-def _write(pattern: Pattern, solved: SolvedDesign, options: Namespace) -> Iterator[str]:
+def _write(cut: _Cut, options: Namespace) -> Iterator[str]:
     """Write the files that are asked for, and yield a line for each."""
     asked = {kind: Path(name) for kind in _FILES if (name := getattr(options, kind))}
-    design = solved.solution.stages.design
+    design = cut.solved.solution.stages.design
     heading = Heading(Path(options.input).stem, date.today().isoformat(), design.customer)
-    pieces = pattern.pieces(options.allowance)
-    cut = [cut_piece(piece) for piece in pieces]
+    pieces = (*cut.pieces, *cut.strips)
+    shapes = [cut_piece(piece) for piece in pieces]
     writers = {
-        "dxf": lambda path: write_pattern_dxf(path, lay_out(cut, _WIDTH), heading, options.dxf_standard),
-        "svg": lambda path: write_pattern_svg(path, lay_out(cut, _WIDTH), heading),
-        "plt": lambda path: write_pattern_plt(path, lay_out(cut, _WIDTH)),
-        "pdf": lambda path: _write_pdf(path, _tiling(cut, options.paper), heading),
+        "dxf": lambda path: write_pattern_dxf(path, lay_out(shapes, _WIDTH), heading, options.dxf_standard),
+        "svg": lambda path: write_pattern_svg(path, lay_out(shapes, _WIDTH), heading),
+        "plt": lambda path: write_pattern_plt(path, lay_out(shapes, _WIDTH)),
+        "pdf": lambda path: _write_pdf(path, _tiling(shapes, options.paper), heading),
         "pieces": lambda path: write_pieces(path, pieces),
         "seams": lambda path: write_seams(path, pieces),
-        "json": lambda path: write_text(path, _json(pattern, solved)),
+        "json": lambda path: write_text(path, _json(cut)),
+        "save_block": lambda path: write_block(path, cut.plan.block),
     }
     for kind, path in asked.items():
         writers[kind](path)
         yield f"written to {path}"
 
 
-def _tiling(cut: list[Any], paper: str) -> Tiling:
+def _tiling(cut: list[CutPiece], paper: str) -> Tiling:
     return whole_sheet(cut, _WIDTH) if paper == SHEET else lay_out_on_tiles(cut, PAPERS[paper])
 
 
@@ -153,6 +231,7 @@ def _write_pdf(path: Path, tiling: Tiling, heading: Heading) -> None:
     write_pdf(path, pattern_sheets(tiling, heading, "en"), heading.project)
 
 
-def _json(pattern: Pattern, solved: SolvedDesign) -> str:
-    found = {"assessment": solved.assessment.as_data(), "versions": {"busk": __version__}}
-    return json.dumps({**pattern_values(pattern), **found}, indent=1, ensure_ascii=False) + "\n"
+def _json(cut: _Cut) -> str:
+    found = {"assessment": cut.solved.assessment.as_data(), "versions": {"busk": __version__}}
+    values = pattern_values(cut.pattern, cut.elastics)
+    return json.dumps({**values, **found}, indent=1, ensure_ascii=False) + "\n"

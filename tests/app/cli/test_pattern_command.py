@@ -40,7 +40,9 @@ def test_a_piece_that_does_not_fit_its_cloth_is_told_and_written(
 ) -> None:
     out = tmp_path / "cup.svg"
     assert main(["pattern", *PERSON, "--block", "one-part-cup", "--svg", str(out)]) == 3
-    assert "more than its cloth takes up" in capsys.readouterr().out
+    told = capsys.readouterr().out
+    assert "Cup, left: Strain of " in told
+    assert "Cup tricot, stable takes up 8 %." in told
     assert out.exists()
 
 

@@ -108,6 +108,27 @@ def test_a_long_point_on_a_round_outline_keeps_its_allowance_all_round():
     assert cut_of(piece).exterior.distance(shapely.Polygon(piece.outline).exterior) >= 0.998
 
 
+def test_corners_of_a_sew_line_without_allowance_are_those_of_the_cut_line():
+    """Where points of the cut line were left out, a strip 0.0008 mm wide was once outside."""
+    bare = [(91.15183249, 26.7645929), (20.30068275, 23.4282368)]
+    narrow = [
+        (14.08916899, 97.99232275),
+        (-10.4891292, 22.9682079),
+        (-15.1425636, 9.73153471),
+        (-18.0, 0.0),
+        (-15.1425636, -9.73153471),
+        (-7.47747023, -16.3733759),
+        (2.56166709, -17.816786),
+        (11.7874932, -13.6034923),
+        (17.2708735, -5.07118602),
+    ]
+    piece = piece_of((bare, 0.0), (narrow, 0.125))
+    cut = cut_of(piece)
+    assert shapely.Polygon(piece.outline).difference(cut).area < 1e-3
+    for corner in bare:
+        assert cut.exterior.distance(shapely.Point(corner)) < 1e-5
+
+
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(outlines())
 def test_any_piece_is_inside_its_cut_line_by_its_smallest_allowance_and_not_far(piece: Piece):
