@@ -29,8 +29,8 @@ _LEAST = 440
 NARROW, WIDE = 340, 364
 """First width of the inspector in windows narrower and wider than 1400 pixels."""
 
-VIEW, NARROW_VIEW = (480, 300), (380, 300)
-"""Least width and height of the view, and those beside the pattern pieces [px]."""
+VIEW, BESIDE_PIECES = 480, 544
+"""Least width of the view, and that beside the pieces, where its tools need all of it [px]."""
 
 KEPT_AFTER = 1000
 """Stillness after which the place of the window is remembered [ms]."""
@@ -173,7 +173,7 @@ class Layout(QObject):
             column.setContentsMargins(0, 0, 0, 0)
             column.setSpacing(0)
             holder.setLayout(column)
-        window.view.setMinimumSize(*VIEW)
+        window.view.setMinimumSize(VIEW, 300)
         # Tab goes past the view, where it hides what lies around it: F6 and the pointer lead in.
         window.view.viewport.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
         window.view.viewport.setAccessibleName(tr("3D view"))
@@ -219,8 +219,10 @@ class Layout(QObject):
         if self._window.actions_.alone.isChecked():
             self.show_alone(False)
         pieces = step == "pattern"
-        self._window.view.setMinimumSize(*(NARROW_VIEW if pieces else VIEW))
         self._window.pieces.setVisible(pieces)
+        self._window.view.setMinimumWidth(BESIDE_PIECES if pieces else VIEW)
+        if pieces:
+            self._beside.setSizes([self._beside.width() // 2] * 2)
         self._window.strip.setVisible(not pieces)
         self._window.rail.set_current(step)
         self._window.actions_.steps[step].setChecked(True)

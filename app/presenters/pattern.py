@@ -56,7 +56,7 @@ def piece_rows(pattern: Pattern) -> tuple[PieceRow, ...]:
         rows.append(
             PieceRow(
                 name,
-                sided_title(PieceName(name)),
+                piece_title(name),
                 tr_context("cloth", cloth.title),
                 float(flat.areas.sum()) / 100.0,
                 100.0 * pattern.strains[name].within,
@@ -79,7 +79,7 @@ def seam_rows(pattern: Pattern) -> tuple[SeamRow, ...]:
         rows.append(
             SeamRow(
                 name,
-                sided_title(SeamName(name)),
+                seam_title(name),
                 (first, second),
                 pattern.seam_length(fit),
                 fit.together,
@@ -93,6 +93,21 @@ def seam_rows(pattern: Pattern) -> tuple[SeamRow, ...]:
 def block_title(block: Block) -> str:
     """Return what a block is called; one of the user's own keeps its title."""
     return tr_context(BlockName.context, block.title)
+
+
+def block_about(block: Block) -> str:
+    """Return the pieces of a block in a line."""
+    return ", ".join(piece_title(panel.name) for panel in block.panels)
+
+
+def piece_title(name: str) -> str:
+    """Return what a piece is called by its key, with or without a side."""
+    return sided_title(PieceName(name))
+
+
+def seam_title(name: str) -> str:
+    """Return what a seam is called by its name, with or without a side."""
+    return sided_title(SeamName(name))
 
 
 def _said(message: Message | None) -> str:

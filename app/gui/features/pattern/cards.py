@@ -13,7 +13,7 @@ from app.gui.widgets.basic import button, sentence
 from app.gui.widgets.menu import Menu, pull_down
 from app.gui.widgets.option_field import AmountEdit, OptionCombo
 from app.gui.widgets.tooltip import set_tip
-from app.i18n.catalog import number, tr
+from app.i18n.catalog import number, tr, tr_context
 from app.i18n.lengths import length
 from app.presenters.model_options import Amount
 from app.presenters.pattern import PieceRow, SeamRow
@@ -92,7 +92,7 @@ class PieceCard(_Card):
         row = QHBoxLayout()
         row.setSpacing(6)
         self.look_for = button(tr("Find ways out"))
-        set_tip(self.look_for, tr("Try a dart, another cloth and one more seam, and measure what each leaves"))
+        set_tip(self.look_for, tr("Try a dart, another cloth, one more seam; measure what each leaves"))
         self.look_for.clicked.connect(self.ways_requested)
         self.chart = button(tr("Where a dart helps"))
         set_tip(self.chart, tr("Try darts all round the piece and draw on the body what each leaves"))
@@ -250,10 +250,7 @@ class SeamCard(_Card):
 
 def cloth_title(cloth: Cloth) -> str:
     """Return the title of a cloth in the language in use."""
-    from app.presenters.messages import render  # noqa: PLC0415
-    from core.messages import ClothName, Message  # noqa: PLC0415
-
-    return render(Message("{name}", name=ClothName(cloth.title)))
+    return tr_context("cloth", cloth.title)
 
 
 def _emitting(emit: Callable[[int], Any], place: int) -> Callable[[], None]:

@@ -53,6 +53,7 @@ class PatternController(QObject):
         self._refused = ""
         self.piece = self.seam = ""
         self.is_open = False
+        self._framed = ""  # the block that the camera was moved to
         self.editing = SeamEditing(context, self)
         panel.set_blocks([(each.name, block_title(each), block_about(each)) for each in built_in_blocks()])
         self._connect()
@@ -151,6 +152,7 @@ class PatternController(QObject):
     def _show_step(self, step: str) -> None:
         self.is_open = step == STEP
         self.view.setVisible(self.is_open)
+        self._framed = ""
         if not self.is_open:
             self.layer.end()
             return
@@ -269,7 +271,11 @@ class PatternController(QObject):
         ramps = [
             strain_ramp(pattern.cloths[flat.panel.cloth].limit, dark)(flat.largest) for flat in pattern.flats
         ]
-        self.layer.show(GarmentSeams.of(pattern), vertex_colours(pattern, ramps))
+        seams, framed = GarmentSeams.of(pattern), self._framed
+        self.layer.show(seams, vertex_colours(pattern, ramps))
+        self._framed = pattern.garment.block.name
+        if self._framed != framed:
+            self._context.view.viewport.frame_points(seams.points)
 
     # -- what is selected
 

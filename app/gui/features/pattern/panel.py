@@ -98,12 +98,15 @@ class PatternPanel(QStackedWidget):
             each.setContentsMargins(6, 0, 6, 0)
             column.addWidget(each)
         column.addWidget(self.list)
-        column.addWidget(self.piece_card)
-        column.addWidget(self.seam_card)
         column.addWidget(hairline())
         column.addLayout(self._make_settings())
         column.addStretch(1)
         whole.addWidget(page, 1)
+        cards = QVBoxLayout()
+        cards.setContentsMargins(12, 0, 12, 10)
+        cards.addWidget(self.piece_card)
+        cards.addWidget(self.seam_card)
+        whole.addLayout(cards)
         whole.addWidget(self._make_foot())
         return holder
 
@@ -183,4 +186,3 @@ class PatternPanel(QStackedWidget):
         set_tag(self.verdict, "tone", tone)
         self.note.setText(note)
         self.note.setVisible(bool(note))
-

@@ -14,7 +14,7 @@ from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import number, tr
 from app.presenters.pattern import PieceRow
 
-_HEIGHT = 40  # of a row [px]
+_HEIGHT = 36  # of a row [px]
 _LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
 _RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 
@@ -60,7 +60,7 @@ class PieceButton(QAbstractButton):
             painter.setPen(QPen(QColor(tokens.accent), 2) if self.hasFocus() else Qt.PenStyle.NoPen)
             painter.setBrush(QColor(tokens.selected if self.isChecked() else tokens.hover))
             painter.drawRoundedRect(QRectF(self.rect()).adjusted(1, 1, -1, -1), 7, 7)
-        whole = QRectF(self.rect()).adjusted(10, 4, -10, -4)
+        whole = QRectF(self.rect()).adjusted(10, 2, -10, -2)
         wide = 92.0
         painter.setFont(font("body"))
         painter.setPen(QColor(tokens.text))

@@ -41,6 +41,7 @@ STEPS = 20
 _EDGE = 18.0  # round the pieces [px]
 _NEAR = 7.0  # how near to a seam the pointer means it [px]
 _FARTHEST = (0.4, 12.0)  # of the scale in which all is seen [1]
+_SMALL = 96.0  # a piece that is narrower has its strain alone written on it [px]
 _FAINT = 0.35  # how opaque pieces of a former shape are [1]
 
 
@@ -155,7 +156,7 @@ class PiecesView(QWidget):
     def piece_at(self, spot: QPointF) -> str:
         """Return the piece at a place of the widget, or an empty text."""
         for shape, move in zip(self._shapes, self._moves, strict=True):
-            outline = np.concatenate([points[:-1] for _, points in shape.sides])
+            outline = np.concatenate([points[:-1] for _, points, _ in shape.sides])
             if _polygon(self._spots(shape.points[outline] + move)).containsPoint(
                 spot, Qt.FillRule.OddEvenFill
             ):
@@ -167,7 +168,7 @@ class PiecesView(QWidget):
         best, found = _NEAR, ""
         place = np.array([spot.x(), spot.y()])
         for shape, move in zip(self._shapes, self._moves, strict=True):
-            for name, points in shape.sides:
+            for name, points, _ in shape.sides:
                 away = _distance(self._spots(shape.points[points] + move), place)
                 if away < best:
                     best, found = away, name
@@ -304,11 +305,11 @@ class PiecesView(QWidget):
             [self._spots(s.points + m)[s.faces] for s, m in zip(self._shapes, self._moves, strict=True)]
         )
         colours = strain_ramp(1.0, dark)(np.linspace(-1.0, 1.0, STEPS + 1))
-        for number in np.unique(step):
-            own = corners[step == number]
+        for shade in np.unique(step):
+            own = corners[step == shade]
             closed = np.concatenate([own, own[:, :1], np.full((len(own), 1, 2), np.nan)], axis=1)
             path = curve_path(closed.reshape(-1, 2))
-            ink = QColor(*np.round(colours[number]).astype(int).tolist())
+            ink = QColor(*np.round(colours[shade]).astype(int).tolist())
             painter.setPen(QPen(ink, 0.8))  # closes the hair between two triangles
             painter.setBrush(ink)
             painter.drawPath(path)
@@ -317,12 +318,12 @@ class PiecesView(QWidget):
 
     def _paint_sides(self, painter: QPainter, shape: PieceShape, move: Floats) -> None:
         tokens = tokens_of(self)
-        outline = np.concatenate([points[:-1] for _, points in shape.sides])
+        outline = np.concatenate([points[:-1] for _, points, _ in shape.sides])
         edge = tokens.accent if shape.name == self.piece else tokens.bad if not shape.fits else tokens.text
         painter.setBrush(Qt.BrushStyle.NoBrush)
         painter.setPen(QPen(QColor(edge), 2.0 if shape.name == self.piece else 1.2))
         painter.drawPolygon(_polygon(self._spots(shape.points[outline] + move)))
-        for name, points in shape.sides:
+        for name, points, forward in shape.sides:
             if name not in (self.seam, self.hovered) or not name:
                 continue
             spots = self._spots(shape.points[points] + move)
@@ -331,7 +332,7 @@ class PiecesView(QWidget):
             painter.setPen(pen)
             painter.drawPolyline(_polygon(spots))
             if name == self.seam and self._knob is not None:
-                self._paint_knob(painter, _walked(shape.points[points], self._knob) + move)
+                self._paint_knob(painter, _walked(shape.points[points], self._knob, forward) + move)
 
     def _paint_knob(self, painter: QPainter, place: Floats) -> None:
         tokens, (x, y) = tokens_of(self), self._spots(place[None])[0]
@@ -340,25 +341,50 @@ class PiecesView(QWidget):
         painter.drawEllipse(QPointF(x, y), 6.5, 6.5)
 
     def _paint_titles(self, painter: QPainter) -> None:
-        tokens = tokens_of(self)
-        dark_on_light = QColor("#1C1B1A" if not tokens.dark else "#F4F2EF")
         for shape, move in zip(self._shapes, self._moves, strict=True):
-            x, y = self._spots((shape.points.mean(axis=0) + move)[None])[0]
-            room = self._scale * shape.size[0] + 24.0
-            words = self._titles.get(shape.name, shape.name), self._values.get(shape.name, "")
-            for line, (text, role) in enumerate(zip(words, ("title", "caption"), strict=True)):
-                painter.setFont(font(role))
-                shown = painter.fontMetrics().elidedText(text, Qt.TextElideMode.ElideRight, round(room))
-                ink = QColor(tokens.bad) if line and not shape.fits else dark_on_light
-                painter.setPen(ink)
-                where = QRectF(x - room / 2.0, y - 15.0 + 14.0 * line, room, 15.0)
-                painter.drawText(where, Qt.AlignmentFlag.AlignCenter, shown)
+            x, y = self._spots((_inside(shape) + move)[None])[0]
+            self._paint_title(painter, QPointF(x, y), shape)
+
+    def _paint_title(self, painter: QPainter, middle: QPointF, shape: PieceShape) -> None:
+        """Write title and strain on a ground of their own: cloth may have any colour."""
+        tokens, room = tokens_of(self), self._scale * shape.size[0] + 30.0
+        lines = []
+        texts = self._titles.get(shape.name, shape.name), self._values.get(shape.name, "")
+        small = self._scale * shape.size[0] < _SMALL and shape.name != self.piece
+        for text, role in tuple(zip(texts, ("title", "caption"), strict=True))[small:]:
+            painter.setFont(font(role, tabular=True))
+            metrics = painter.fontMetrics()
+            shown = metrics.elidedText(text, Qt.TextElideMode.ElideRight, round(room))
+            lines.append((shown, painter.font(), metrics.horizontalAdvance(shown)))
+        wide = max(width for _, _, width in lines) + 14.0
+        high = 4.0 + 15.0 * len(lines)
+        ground = QRectF(middle.x() - wide / 2.0, middle.y() - high / 2.0, wide, high)
+        colour = QColor(tokens.panel)
+        colour.setAlpha(200)
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(colour)
+        painter.drawRoundedRect(ground, 7.0, 7.0)
+        for at, (shown, type_, _) in enumerate(lines):
+            painter.setFont(type_)
+            value = at == len(lines) - 1
+            painter.setPen(QColor(tokens.warn if value and not shape.fits else tokens.text))
+            where = QRectF(ground.left(), ground.top() + 1.0 + 15.0 * at, wide, 16.0)
+            painter.drawText(where, Qt.AlignmentFlag.AlignCenter, shown)
 
 
-def _walked(points: Floats, share: float) -> Floats:
-    """Return the place at a share of the length of a side, (2,) [mm]."""
+def _inside(shape: PieceShape) -> Floats:
+    """Return a place well inside a piece for its title, (2,) [mm]: far from its outline, near its middle."""
+    outline = np.concatenate([points[:-1] for _, points, _ in shape.sides])
+    away = np.linalg.norm(shape.points[:, None] - shape.points[outline][None, ::3], axis=2).min(axis=1)
+    off = np.linalg.norm(shape.points - shape.points.mean(axis=0), axis=1)
+    return np.asarray(shape.points[int((away - 0.3 * off).argmax())])
+
+
+def _walked(points: Floats, share: float, forward: bool) -> Floats:
+    """Return the place at a share of the length of a side from its beginning or its end, (2,) [mm]."""
     along = arc_length(points)
-    return np.asarray(interpolate(np.array([share * along[-1]]), along, points)[0])
+    at = share if forward else 1.0 - share
+    return np.asarray(interpolate(np.array([at * along[-1]]), along, points)[0])
 
 
 def _polygon(spots: Floats) -> QPolygonF:

@@ -1,4 +1,4 @@
-"""Pieces of the shown body, made beside the window: the newest shape counts, and what has not changed stays."""
+"""Pieces of the shown body, made beside the window: the newest shape counts, what has not changed stays."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from app.i18n.catalog import tr
 from core.document.block import Block
 from core.document.garment_pattern import GarmentPattern
 from core.geometry.mesh import Points
-from core.pattern.cloth_library import built_in
+from core.pattern.cloth_library import cloths_of
 from core.pattern.garment import CutGarment, Pattern, cut_garment
 from core.pattern.places import BodyPlaces
 from core.pattern.seam_curves import SeamDrawing
@@ -109,7 +109,7 @@ class PatternWorker(QObject):
         with self._turn:
             drawing = self._drawing_of(request.frame)
             garment = self._garment_of(drawing, request.plan.block)
-            cloths = {cloth.name: cloth for cloth in (*built_in(), *request.plan.cloths)}
+            cloths = cloths_of(request.plan)
             former = None if request.final else self._matched
             pattern = garment.flat(worn_skin(request.frame), cloths, former)
             self._matched = pattern.matched
