@@ -25,9 +25,12 @@ import numpy as np
 from pages import put, table
 
 from app.presenters.samples import SAMPLES, sample_design
+from core.analysis.inverse_design.bust_quantities import GIRTH
 from core.analysis.inverse_design.objective import INSIDE
 from core.analysis.inverse_design.profile_curve import profile_goals
-from core.analysis.inverse_design.quantities import GIRTH, NAMES, Goal, profile_name, reading
+from core.analysis.inverse_design.profile_quantities import profile_name
+from core.analysis.inverse_design.quantities import NAMES, reading
+from core.analysis.inverse_design.quantity import Goal
 from core.analysis.inverse_design.solve import solve_targets
 from core.document.design import Design, ScanSource
 from core.errors import UserError

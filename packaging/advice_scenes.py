@@ -9,7 +9,8 @@ import numpy as np
 from scenes import HOUSE, bra, wait_for
 
 from app.gui.main_window import MainWindow
-from core.analysis.inverse_design.quantities import Goal, skin_of
+from core.analysis.inverse_design.profile_quantities import skin_of
+from core.analysis.inverse_design.quantity import Goal
 from core.deformation.tffd import deform
 from core.export.mesh import write_mesh
 from core.pipeline.build import Stages, build

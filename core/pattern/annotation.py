@@ -29,6 +29,7 @@ _LETTERS = (4.0, 3.4, 2.8, 2.3)  # sizes that are tried [mm]
 _NARROW = 8.0  # width of a line in a narrow piece, in sizes of letters [1]
 _LINE = 1.4  # from line to line, in sizes of letters [1]
 _FREE = 2.5  # between words and the sew line, and between arrows and words [mm]
+_LEAST = 0.8  # the same on a strip that is too narrow for that [mm]
 _STEP = 3.0  # between places that are tried [mm]
 _LONGEST = (90.0, 40.0)  # grain line and stretch [mm]
 _ENDS = 5.0  # from an arrow to the sew line and to words [mm]
@@ -130,9 +131,11 @@ def _place_words(free: BaseGeometry, lines: tuple[str, ...]) -> tuple[tuple[str,
     """Return the lines that fit, the size of their letters and the middle of the room that they take."""
     places = _grid(free)
     depth = shapely.distance(shapely.points(places), free.boundary)
-    for written in (lines, _broken(lines), _broken(lines[:3]), _broken(lines[:3:2]), lines[:1]):
+    row = (" · ".join(lines),)  # on a strip
+    tries = (lines, row, _broken(lines), _broken(lines[:3]), _broken(lines[:3:2]), lines[:1])
+    for written, around in (*((each, _FREE) for each in tries), (row, _LEAST), (lines[:1], _LEAST)):
         for size in _LETTERS:
-            half = 0.5 * np.array(_extent(written, size)) + _FREE
+            half = 0.5 * np.array(_extent(written, size)) + around
             boxes = shapely.box(*(places - half).T, *(places + half).T)
             fits = shapely.contains_properly(free, boxes)
             if fits.any():

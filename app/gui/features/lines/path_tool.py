@@ -78,7 +78,8 @@ class LinePathTool(QObject):
         self._context.selection.select_line(name)
         self._mesh_shown = self._context.view.tools.actions_by_name["control-mesh"].isChecked()
         self._context.view.set_layer("control-mesh", True)
-        self._sketching.card.both.hide()
+        for choice in (self._sketching.card.both, self._sketching.card.snap):  # they are of new lines
+            choice.hide()
         self._sketching.begin(frame)
         self._show()
 
