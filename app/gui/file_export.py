@@ -6,13 +6,18 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtGui import QGuiApplication
+from PySide6.QtCore import QMarginsF, QSizeF
+from PySide6.QtGui import QGuiApplication, QPageLayout, QPageSize, QPainter
+from PySide6.QtPrintSupport import QPrintDialog, QPrinter
 
 from app.gui.widgets.file_dialogs import ask_save
 from app.i18n.catalog import tr
-from core.errors import UserError
+from app.report.painter import UNITS
+from app.report.pdf_file import PaintedPages
+from core.errors import ProjectError, UserError
 from core.export.csv_cells import Table, cell, write_table
 from core.files.atomic_write import atomic_path
+from core.messages import Message
 
 if TYPE_CHECKING:
     from app.gui.context import AppContext
@@ -55,3 +60,34 @@ def save_table(context: AppContext, table: Table, title: str, ending: str) -> No
     path = ask_save(context.window, title, name, "CSV (*.csv)", ".csv")
     if path:
         write_file(context.notifications, f"table of {ending}", path, lambda to: write_table(to, table))
+
+
+def print_pages(context: AppContext, pages: PaintedPages, name: str) -> None:
+    """Ask for a printer, and print pages at their true size as the document ``name``."""
+    printer = QPrinter(QPrinter.PrinterMode.HighResolution)
+    printer.setDocName(name)
+    size, upright = (
+        QPageSize(QSizeF(*pages.size), QPageSize.Unit.Millimeter),
+        QPageLayout.Orientation.Portrait,
+    )
+    printer.setPageLayout(QPageLayout(size, upright, QMarginsF(0, 0, 0, 0)))
+    printer.setFullPage(True)
+    if not QPrintDialog(printer, context.window).exec():
+        return
+    painter = QPainter()
+    if not painter.begin(printer):
+        texts = Message("The pages could not be printed."), Message("Choose another printer.")
+        context.notifications.error(ProjectError(*texts), "print")
+        return
+    wished = range(pages.count)
+    if printer.printRange() == QPrinter.PrintRange.PageRange:
+        wished = wished[max(printer.fromPage() - 1, 0) : printer.toPage() or None]
+    for page in wished:
+        if page != wished[0]:
+            printer.newPage()
+        painter.resetTransform()
+        scale = printer.resolution() / 25.4 / UNITS
+        painter.scale(scale, scale)
+        pages.paint(painter, page)
+    painter.end()
+    context.notifications.withdraw("print")

@@ -20,8 +20,8 @@ _WIDTHS = 24  # of rows that are tried
 class PieceShape:
     """A piece as it is drawn: ``points`` (p, 2) [mm] with y up, ``faces`` (m, 3), ``strain`` of each, (m,).
 
-    ``sides`` are name of seam, points (k,), and whether it is walked that way, in order round it. ``middle`` is where it is on the body:
-    bearing [rad], 0 in front and positive at the subject's left, and height [mm].
+    ``sides`` are name of seam, points (k,), and whether it is walked that way, in order round it. ``middle``
+    is where it is on the body: bearing [rad], 0 in front and positive at the subject's left, height [mm].
     """
 
     name: str

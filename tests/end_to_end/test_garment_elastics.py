@@ -31,7 +31,7 @@ def test_tables_of_ones_own_are_brought_in_or_refused_and_taken_away(
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        monkeypatch.setattr(elastics_desk, "ask_table", lambda *_: str(chosen[0]))
+        monkeypatch.setattr(elastics_desk, "ask_file", lambda *_: str(chosen[0]))
         monkeypatch.setattr(elastics_desk, "ask_save", lambda *_: str(empty))
         monkeypatch.setattr(elastics_desk, "ask", lambda *_: "delete")
         window.garment.elastics_requested.emit()
@@ -188,7 +188,7 @@ def test_one_that_is_called_as_ours_gets_a_name_of_its_own_and_none_is_called_me
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        monkeypatch.setattr(elastics_desk, "ask_table", lambda *_: str(table))
+        monkeypatch.setattr(elastics_desk, "ask_file", lambda *_: str(table))
         window.garment.elastics_requested.emit()
         sheet = window.elastics_controller.sheet
         assert sheet is not None

@@ -225,7 +225,7 @@ def test_the_printer_gets_the_same_pages(
         def exec(self) -> int:
             return 1
 
-    monkeypatch.setattr("app.gui.features.report.controller.QPrintDialog", Dialog)
+    monkeypatch.setattr("app.gui.file_export.QPrintDialog", Dialog)
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
@@ -257,7 +257,7 @@ def test_only_the_pages_that_were_chosen_are_printed(
         def exec(self) -> int:
             return 1
 
-    monkeypatch.setattr("app.gui.features.report.controller.QPrintDialog", Dialog)
+    monkeypatch.setattr("app.gui.file_export.QPrintDialog", Dialog)
 
     def script(window: MainWindow) -> Script:
         yield settled(window)

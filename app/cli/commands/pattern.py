@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import os
 from argparse import ArgumentParser, Namespace
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import replace
 from datetime import date
 from pathlib import Path
 
@@ -14,52 +13,24 @@ from app.cli.design import design_of
 from app.cli.options import add_lines, add_scan
 from app.cli.output import DONE, finish, table_lines
 from app.cli.solved_design import SolvedDesign, solve_design
-from app.presenters.messages import line_title
 from app.presenters.pattern import piece_rows, seam_rows
-from app.rendering.band import band_width
-from core import __version__
+from app.presenters.pattern_files import SHEET, CutPattern, cut_pattern, tiling_of, write_pattern
 from core.document.design import Design
 from core.document.garment_pattern import GarmentPattern
 from core.document.lower_trunk import LowerTrunk
 from core.errors import PatternError
-from core.export.pattern_csv import write_pieces, write_seams
-from core.export.pattern_data import pattern_values
-from core.export.pattern_dxf import write_pattern_dxf
-from core.export.pattern_plt import write_pattern_plt
-from core.export.pattern_strips import strip_pieces, uncut_strips
-from core.export.pattern_svg import write_pattern_svg
+from core.export.pattern_strips import uncut_strips
 from core.export.report_data import Heading
-from core.files.atomic_write import write_text
-from core.garment.cut_list import CutList, cut_list_of
 from core.messages import Message
-from core.pattern.allowance import CutPiece, cut_piece
 from core.pattern.annotation import elastic_words
 from core.pattern.block_library import built_in_blocks, find_block, read_block, write_block
 from core.pattern.cloth_csv import read_cloth, write_template
 from core.pattern.cloth_library import ALL_PIECES, built_in, find_cloth, with_cloth
-from core.pattern.edge_elastics import edge_elastics, lines_on_edges
-from core.pattern.garment import Pattern, pattern_of
-from core.pattern.layout import PAPERS, Tiling, lay_out, lay_out_on_tiles, whole_sheet
-from core.pattern.piece import EdgeElastic, Piece, SideKey
+from core.pattern.edge_elastics import lines_on_edges
+from core.pattern.garment import pattern_of
+from core.pattern.layout import PAPERS, Tiling
 
-SHEET = "sheet"
-"""One page that is as large as the layout."""
-
-_WIDTH = 1400.0  # of the cloth or paper that pieces are laid out on [mm]
 _FILES = ("dxf", "svg", "pdf", "plt", "pieces", "seams", "json", "save_block")
-
-
-@dataclass(frozen=True)
-class _Cut:
-    """A pattern with the ``pieces`` and ``strips`` to cut, and the ``elastics`` of its edges."""
-
-    plan: GarmentPattern
-    pattern: Pattern
-    solved: SolvedDesign
-    cuts: CutList
-    elastics: Mapping[SideKey, EdgeElastic]
-    pieces: tuple[Piece, ...]
-    strips: tuple[Piece, ...]
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -113,8 +84,10 @@ def run(options: Namespace) -> int:
     if plan.block.needs_lower_trunk:
         design = replace(design, lower=design.lower or LowerTrunk())
     solved = solve_design(design, options.line or [], options.elastic or [], bare=True)
-    cut = _cut(plan, solved, strips=options.strips)
-    lines = [*solved.verdict, "", *_text(cut), *_write(cut, options)]
+    shown = solved.solution
+    pattern = pattern_of(shown.stages, shown.body.vertices, plan)
+    cut = cut_pattern(pattern, plan, shown, strips=options.strips)
+    lines = [*solved.verdict, "", *_text(cut), *_write(cut, solved, options)]
     return finish("\n".join(lines), solved.converged and cut.pattern.fits_cloths, solved.warnings)
 
 
@@ -147,18 +120,6 @@ def _plan(options: Namespace, design: Design) -> GarmentPattern:
     return plan if options.allowance is None else replace(plan, allowance=options.allowance)
 
 
-def _cut(plan: GarmentPattern, solved: SolvedDesign, *, strips: bool) -> _Cut:
-    shown, design = solved.solution, solved.solution.stages.design
-    pattern = pattern_of(shown.stages, shown.body.vertices, plan)
-    cuts = cut_list_of(shown)
-    elastics = edge_elastics(pattern, cuts)
-    names = [row.line for row in cuts.rows]
-    titles = {name: line_title(name, design) for name in names}
-    widths = {name: band_width(name, design) for name in names}
-    straps = strip_pieces(shown, cuts, lines_on_edges(pattern, cuts), titles, widths) if strips else ()
-    return _Cut(plan, pattern, solved, cuts, elastics, pattern.pieces(plan.allowance, elastics), straps)
-
-
 def _listed() -> Iterator[str]:
     rows = [("block", "garment"), *((block.name, block.title) for block in built_in_blocks())]
     yield from table_lines(rows)
@@ -167,7 +128,7 @@ def _listed() -> Iterator[str]:
     yield from table_lines([("cloth", "title", "limit %"), *cloths])
 
 
-def _text(cut: _Cut) -> Iterator[str]:
+def _text(cut: CutPattern) -> Iterator[str]:
     pattern, pieces, seams = cut.pattern, piece_rows(cut.pattern), seam_rows(cut.pattern)
     rows = [("piece", "cloth", "area cm2", "strain %", "limit %", "")]
     for piece in pieces:
@@ -183,7 +144,7 @@ def _text(cut: _Cut) -> Iterator[str]:
     yield from _elastics(cut)
 
 
-def _elastics(cut: _Cut) -> Iterator[str]:
+def _elastics(cut: CutPattern) -> Iterator[str]:
     """Yield what is said of elastics on edges, and of strips."""
     for (piece, number), each in cut.elastics.items():
         flat = next(flat for flat in cut.pattern.flats if flat.panel.name == piece)
@@ -195,30 +156,20 @@ def _elastics(cut: _Cut) -> Iterator[str]:
         yield from (f"No strip of {name}: busk cut says why." for name in uncut_strips(cut.cuts, on_edges))
 
 
-def _write(cut: _Cut, options: Namespace) -> Iterator[str]:
+def _write(cut: CutPattern, solved: SolvedDesign, options: Namespace) -> Iterator[str]:
     """Write the files that are asked for, and yield a line for each."""
     asked = {kind: Path(name) for kind in _FILES if (name := getattr(options, kind))}
-    design = cut.solved.solution.stages.design
+    design = solved.solution.stages.design
     heading = Heading(Path(options.input).stem, date.today().isoformat(), design.customer)
-    pieces = (*cut.pieces, *cut.strips)
-    shapes = [cut_piece(piece) for piece in pieces]
-    writers = {
-        "dxf": lambda path: write_pattern_dxf(path, lay_out(shapes, _WIDTH), heading, options.dxf_standard),
-        "svg": lambda path: write_pattern_svg(path, lay_out(shapes, _WIDTH), heading),
-        "plt": lambda path: write_pattern_plt(path, lay_out(shapes, _WIDTH)),
-        "pdf": lambda path: _write_pdf(path, _tiling(shapes, options.paper), heading),
-        "pieces": lambda path: write_pieces(path, pieces),
-        "seams": lambda path: write_seams(path, pieces),
-        "json": lambda path: write_text(path, _json(cut)),
-        "save_block": lambda path: write_block(path, cut.plan.block),
-    }
+    found = {"assessment": solved.assessment.as_data()}
     for kind, path in asked.items():
-        writers[kind](path)
+        if kind == "pdf":
+            _write_pdf(path, tiling_of(cut, options.paper), heading)
+        elif kind == "save_block":
+            write_block(path, cut.plan.block)
+        else:
+            write_pattern(path, f"dxf-{options.dxf_standard}" if kind == "dxf" else kind, cut, heading, found)
         yield f"written to {path}"
-
-
-def _tiling(cut: list[CutPiece], paper: str) -> Tiling:
-    return whole_sheet(cut, _WIDTH) if paper == SHEET else lay_out_on_tiles(cut, PAPERS[paper])
 
 
 def _write_pdf(path: Path, tiling: Tiling, heading: Heading) -> None:
@@ -229,9 +180,3 @@ def _write_pdf(path: Path, tiling: Tiling, heading: Heading) -> None:
 
     application()
     write_pdf(path, pattern_sheets(tiling, heading, "en"), heading.project)
-
-
-def _json(cut: _Cut) -> str:
-    found = {"assessment": cut.solved.assessment.as_data(), "versions": {"busk": __version__}}
-    values = pattern_values(cut.pattern, cut.elastics)
-    return json.dumps({**values, **found}, indent=1, ensure_ascii=False) + "\n"

@@ -70,9 +70,11 @@ def ask_scan(parent: QWidget, title: str) -> str:
     return path
 
 
-def ask_table(parent: QWidget, title: str) -> str:
-    """Return the table that the user wants to bring in, or an empty text."""
-    kinds = "CSV (*.csv *.tsv *.txt)"
+TABLES = "CSV (*.csv *.tsv *.txt)"
+
+
+def ask_file(parent: QWidget, title: str, kinds: str = TABLES) -> str:
+    """Return the file of these kinds that the user wants to bring in, or an empty text."""
     path, _ = QFileDialog.getOpenFileName(parent, title, str(last_folder("written")), kinds)
     if path:
         remember_folder("written", path)

@@ -12,7 +12,7 @@ from PySide6.QtCore import QObject
 from app.gui.features.garment.elastics_dialog import ElasticsDialog
 from app.gui.features.garment.panel import GarmentPanel
 from app.gui.widgets.dialog import ask
-from app.gui.widgets.file_dialogs import ask_save, ask_table
+from app.gui.widgets.file_dialogs import ask_file, ask_save
 from app.i18n.catalog import tr
 from app.i18n.lengths import length
 from app.presenters.elastics import elastic_views
@@ -65,7 +65,7 @@ class ElasticsController(QObject):
     def bring_in(self) -> None:
         """Prompt for a table of the user and add its elastic."""
         sheet = self.sheet
-        path = ask_table(sheet or self._context.window, tr("Import elastic"))
+        path = ask_file(sheet or self._context.window, tr("Import elastic"))
         if not path or sheet is None:
             return
         try:

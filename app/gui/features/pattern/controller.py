@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from PySide6.QtCore import QObject, Signal
 
+from app.gui.features.pattern.exporting import PatternExport
 from app.gui.features.pattern.garment_layer import GarmentLayer, GarmentSeams, vertex_colours
 from app.gui.features.pattern.panel import PatternPanel
 from app.gui.features.pattern.pieces_view import PiecesView, strain_ramp
@@ -17,7 +17,7 @@ from app.gui.features.pattern.worker import PatternRequest, PatternResult, Patte
 from app.gui.theme.stylesheet import tokens_of
 from app.i18n.catalog import number, tr
 from app.presenters.messages import render
-from app.presenters.pattern import block_about, block_title, piece_rows, piece_title, seam_rows, seam_title
+from app.presenters.pattern import block_about, block_title, piece_rows, seam_rows, seam_title
 from app.presenters.pattern_layout import piece_shapes
 from core.document.block import Block
 from core.document.design import Design
@@ -55,6 +55,7 @@ class PatternController(QObject):
         self.is_open = False
         self._framed = ""  # the block that the camera was moved to
         self.editing = SeamEditing(context, self)
+        self.files = PatternExport(context, self)
         panel.set_blocks([(each.name, block_title(each), block_about(each)) for each in built_in_blocks()])
         self._connect()
 
@@ -111,6 +112,10 @@ class PatternController(QObject):
             return replace(design, pattern=replace(design.pattern, **changes))  # type: ignore[arg-type]
 
         self._session.edit(changed, text, what)
+
+    def set_plan(self, plan: GarmentPattern, text: str) -> None:
+        """Take another plan as one undo step."""
+        self._session.edit(lambda design: replace(design, pattern=plan), text)
 
     def set_allowance(self, mm: float) -> None:
         """Set the allowance of seams without their own [mm]."""
@@ -346,13 +351,3 @@ class PatternController(QObject):
 def _named(name: str, each: bool) -> tuple[str, ...]:
     """Return the names of the pieces of a panel."""
     return (f"{name} left", f"{name} right") if each else (name,)
-
-
-def piece_of(name: str) -> str:
-    """Return the title of a piece for an edit: that of both sides."""
-    return piece_title(name.removesuffix(" left").removesuffix(" right"))
-
-
-def file_of(path: str) -> Path:
-    """Return a path as it is read."""
-    return Path(path).absolute()

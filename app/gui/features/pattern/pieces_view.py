@@ -350,7 +350,7 @@ class PiecesView(QWidget):
         tokens, room = tokens_of(self), self._scale * shape.size[0] + 30.0
         lines = []
         texts = self._titles.get(shape.name, shape.name), self._values.get(shape.name, "")
-        small = self._scale * shape.size[0] < _SMALL and shape.name != self.piece
+        small = bool(self._scale * shape.size[0] < _SMALL) and shape.name != self.piece
         for text, role in tuple(zip(texts, ("title", "caption"), strict=True))[small:]:
             painter.setFont(font(role, tabular=True))
             metrics = painter.fontMetrics()

@@ -8,14 +8,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PySide6.QtCore import QObject
 
-from app.i18n.catalog import number, tr
+from app.i18n.catalog import number, tr, tr_context
 from app.presenters.pattern import piece_title, seam_title
 from core.document.block import Block, Seam
+from core.document.cloth import Cloth
 from core.document.garment_pattern import GarmentPattern
 from core.errors import UserError
 from core.geometry.mesh import Points
 from core.geometry.plane_sections import arc_length, interpolate
 from core.pattern.block_library import built_in_blocks
+from core.pattern.cloth_library import find_cloth, with_cloth
 from core.pattern.garment import Pattern
 from core.pattern.seam_moves import moved_block, seam_handles
 
@@ -136,11 +138,19 @@ class SeamEditing(QObject):
 
     # -- the selected piece
 
-    def choose_cloth(self, cloth: str) -> None:
-        """Cut the selected piece, and that of the other side, from another cloth."""
-        piece = self._controller.piece
-        text = tr("Cloth of {piece}: {cloth}").format(piece=_both(piece), cloth=cloth)
-        self._edit_panel(text, cloth=cloth)
+    def choose_cloth(self, name: str) -> None:
+        """Cut the selected piece, and that of the other side, from a cloth that is known by its name."""
+        plan = self._controller.plan
+        if plan is not None:
+            self.use_cloth(find_cloth(name, plan.cloths))
+
+    def use_cloth(self, cloth: Cloth) -> None:
+        """Cut the selected piece, and that of the other side, from a cloth."""
+        plan, piece = self._controller.plan, self._controller.piece
+        if plan is not None and piece:
+            title = tr_context("cloth", cloth.title)
+            text = tr("Cloth of {piece}: {cloth}").format(piece=_both(piece), cloth=title)
+            self._controller.set_plan(with_cloth(plan, _base(piece), cloth), text)
 
     def turn(self, degrees: float) -> None:
         """Turn the grain line of the selected piece [degrees]."""
@@ -153,7 +163,7 @@ class SeamEditing(QObject):
         plan, piece = self._controller.plan, self._controller.piece
         if plan is None:
             return
-        base = piece.removesuffix(" left").removesuffix(" right")
+        base = _base(piece)
         panels = tuple(
             replace(each, **changes) if each.name in (piece, base) else each  # type: ignore[arg-type]
             for each in plan.block.panels
@@ -180,5 +190,10 @@ def _original(block: Block) -> Block | None:
     return next((each for each in built_in_blocks() if each.name == block.name), None)
 
 
+def _base(piece: str) -> str:
+    """Return the name of a piece without its side."""
+    return piece.removesuffix(" left").removesuffix(" right")
+
+
 def _both(piece: str) -> str:
-    return piece_title(piece.removesuffix(" left").removesuffix(" right"))
+    return piece_title(_base(piece))

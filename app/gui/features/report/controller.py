@@ -10,12 +10,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
-from PySide6.QtCore import QMarginsF, QObject
-from PySide6.QtGui import QImage, QPageLayout, QPageSize, QPainter
-from PySide6.QtPrintSupport import QPrintDialog, QPrinter
+from PySide6.QtCore import QObject
+from PySide6.QtGui import QImage
 
 from app.gui.features.report.page import ReportPage
-from app.gui.file_export import write_file
+from app.gui.file_export import print_pages, write_file
 from app.gui.session.jobs import Job
 from app.gui.session.settings import get_setting
 from app.gui.widgets.file_dialogs import ask_save
@@ -25,15 +24,13 @@ from app.presenters.messages import render
 from app.rendering.ambient_occlusion import bake_occlusion
 from app.report.document import ReportDocument
 from app.report.pages import Pages, pages_of
-from app.report.painter import UNITS
 from app.report.pdf_file import write_pdf
-from core.errors import ProjectError, UserError
+from core.errors import UserError
 from core.export.csv_cells import ENCODING
 from core.export.report_data import Heading, Report, make_report
 from core.export.report_data_file import report_csv, report_json
 from core.files.atomic_write import write_text
 from core.geometry.mesh import Floats
-from core.messages import Message
 from core.pipeline.converged import converged_frame
 from core.pipeline.live_solver import Frame
 from core.progress import Progress
@@ -277,31 +274,8 @@ class ReportController(QObject):
         write_file(self._context.notifications, "sheet", path, lambda _: write())
 
     def _print(self) -> None:
-        pages = self.pages
-        printer = QPrinter(QPrinter.PrinterMode.HighResolution)
-        printer.setDocName(self._context.session.name)
-        size, upright = QPageSize(QPageSize.PageSizeId.A4), QPageLayout.Orientation.Portrait
-        printer.setPageLayout(QPageLayout(size, upright, QMarginsF(0, 0, 0, 0)))
-        printer.setFullPage(True)
-        if pages is None or not QPrintDialog(printer, self._context.window).exec():
-            return
-        painter = QPainter()
-        if not painter.begin(printer):
-            texts = Message("The report could not be printed."), Message("Choose another printer.")
-            self._context.notifications.error(ProjectError(*texts), "print")
-            return
-        wished = range(pages.count)
-        if printer.printRange() == QPrinter.PrintRange.PageRange:
-            wished = wished[max(printer.fromPage() - 1, 0) : printer.toPage() or None]
-        for page in wished:
-            if page != wished[0]:
-                printer.newPage()
-            painter.resetTransform()
-            scale = printer.resolution() / 25.4 / UNITS
-            painter.scale(scale, scale)
-            pages.paint(painter, page)
-        painter.end()
-        self._context.notifications.withdraw("print")
+        if self.pages is not None:
+            print_pages(self._context, self.pages, self._context.session.name)
 
 
 def _alike(one: Frame, other: Frame) -> bool:

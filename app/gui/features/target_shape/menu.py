@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QMenu
 
-from app.gui.widgets.file_dialogs import ask_table
+from app.gui.widgets.file_dialogs import ask_file
 from app.gui.widgets.menu import Menu, pull_down
 from app.i18n.catalog import tr
 from app.presenters.target_shape import profile_title, target_title
@@ -59,7 +59,7 @@ class TargetMenu(QObject):
 
     def ask_profile(self, side: str) -> None:
         """Prompt for a table, and add its profile as a target."""
-        path = ask_table(self._context.window, tr("Profile from file"))
+        path = ask_file(self._context.window, tr("Profile from file"))
         if path:
             self._controller.drawing.take_table(side, path)
 

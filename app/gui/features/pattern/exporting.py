@@ -1,0 +1,162 @@
+"""Pieces leave the window: previewed, printed, and written as files of every kind; blocks and cloths too."""
+
+from __future__ import annotations
+
+import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject
+
+from app.gui.features.pattern.export_dialog import PatternExportDialog
+from app.gui.file_export import print_pages, write_file
+from app.gui.widgets.file_dialogs import ask_file, ask_save
+from app.i18n.catalog import language, tr
+from app.presenters.messages import render
+from app.presenters.pattern_files import (
+    ENDINGS,
+    CutPattern,
+    cut_pattern,
+    kind_titles,
+    tiling_of,
+    write_pattern,
+)
+from app.report.pattern_sheets import PatternSheets, pattern_sheets
+from app.report.pdf_file import write_pdf
+from core.errors import UserError
+from core.export.report_data import Heading
+from core.pattern.block_library import read_block, write_block
+from core.pattern.cloth_csv import read_cloth, write_template
+
+if TYPE_CHECKING:
+    from app.gui.context import AppContext
+    from app.gui.features.pattern.controller import PatternController
+
+_ABOUT = "pattern"  # what notices of files are about
+
+
+class PatternExport(QObject):
+    """Opens the dialog of exports, and reads and writes blocks and tables of cloths."""
+
+    def __init__(self, context: AppContext, controller: PatternController) -> None:
+        super().__init__(controller)
+        self._context, self._controller = context, controller
+        self.dialog: PatternExportDialog | None = None
+        self._cut: CutPattern | None = None
+        self._pages: PatternSheets | None = None
+        panel = controller.panel
+        panel.export_requested.connect(self.show)
+        panel.block_file_requested.connect(self.open_block)
+        panel.save_block_requested.connect(self.save_block)
+        panel.piece_card.cloth_table_requested.connect(self.open_cloth)
+        panel.piece_card.stretch_test_requested.connect(self.save_stretch_test)
+        controller.changed.connect(self._refresh)
+
+    # -- pieces
+
+    def show(self) -> None:
+        """Show what can be written of the pieces."""
+        dialog = self.dialog = PatternExportDialog(self._context.window)
+        dialog.changed.connect(self._refresh)
+        dialog.save_requested.connect(self._save)
+        dialog.print_requested.connect(self._print)
+        dialog.finished.connect(self._forget)
+        self._refresh()
+        dialog.open()
+
+    def _forget(self) -> None:
+        self.dialog = self._cut = self._pages = None
+
+    def _refresh(self) -> None:
+        """Lay the present pieces out on the chosen paper."""
+        dialog, result, plan = self.dialog, self._controller.result, self._controller.plan
+        if dialog is None:
+            return
+        self._cut = self._pages = None
+        if result is None or plan is None or not self._controller.is_current():
+            dialog.show_pages(None, tr("The pieces follow when the solver has converged."))
+            return
+        try:
+            strips = dialog.strips.isChecked()
+            self._cut = cut_pattern(result.pattern, plan, result.request.frame, strips=strips)
+            tiling = tiling_of(self._cut, dialog.paper)
+        except UserError as error:
+            dialog.show_pages(None, render(error.text))
+            return
+        self._pages = pattern_sheets(tiling, self._heading(), language())
+        dialog.show_pages(self._pages)
+        fits = result.pattern.fits_cloths
+        dialog.show_doubt("" if fits else tr("Pieces that do not fit their cloths are written all the same."))
+
+    def _heading(self) -> Heading:
+        document = self._context.session.document
+        assert document is not None
+        variant = document.shown if len(document.designs) > 1 else ""
+        today = datetime.date.today().isoformat()
+        return Heading(self._context.session.name, today, document.customer, variant)
+
+    def _save(self) -> None:
+        dialog, cut, pages = self.dialog, self._cut, self._pages
+        if dialog is None or cut is None or pages is None:
+            return
+        kind, ending = dialog.kind, ENDINGS[dialog.kind]
+        title = kind_titles()[kind][0]
+        name = f"{self._controller.stem()}-{tr('pieces')}{ending}"
+        path = ask_save(dialog, tr("Export pieces"), name, f"{title} (*{ending})", ending)
+        if not path:
+            return
+        heading = pages.heading
+
+        def write(target: Path) -> None:
+            if kind == "pdf":
+                write_pdf(target, pages, heading.project)
+            else:
+                write_pattern(target, kind, cut, heading, {})
+
+        write_file(self._context.notifications, _ABOUT, path, write)
+        dialog.accept()
+
+    def _print(self) -> None:
+        if self._pages is not None and self.dialog is not None:
+            print_pages(self._context, self._pages, self._context.session.name)
+
+    # -- blocks and cloths
+
+    def open_block(self) -> None:
+        """Make the pieces by a block of one's own."""
+        path = ask_file(self._context.window, tr("Open block"), "JSON (*.json)")
+        if not path:
+            return
+        try:
+            self._controller.choose_block(read_block(Path(path)))
+        except (UserError, OSError) as error:
+            self._context.notifications.error(error, _ABOUT)
+
+    def save_block(self) -> None:
+        """Save the block with all that was changed in it."""
+        plan = self._controller.plan
+        if plan is None:
+            return
+        name = f"{plan.block.name}.json"
+        path = ask_save(self._context.window, tr("Save block as…"), name, "JSON (*.json)", ".json")
+        if path:
+            block = plan.block
+            write_file(self._context.notifications, _ABOUT, path, lambda to: write_block(to, block))
+
+    def open_cloth(self) -> None:
+        """Cut the selected piece from a cloth of one's own, of which there is a table."""
+        path = ask_file(self._context.window, tr("Cloth from table…"))
+        if not path:
+            return
+        try:
+            self._controller.editing.use_cloth(read_cloth(Path(path)))
+        except (UserError, OSError) as error:
+            self._context.notifications.error(error, _ABOUT)
+
+    def save_stretch_test(self) -> None:
+        """Save the table in which the 10 cm test of a cloth is entered."""
+        name = tr("cloth") + ".csv"
+        title = tr("Save table of the 10 cm test…")
+        path = ask_save(self._context.window, title, name, "CSV (*.csv)", ".csv")
+        if path:
+            write_file(self._context.notifications, _ABOUT, path, write_template)
