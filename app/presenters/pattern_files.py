@@ -13,6 +13,7 @@ from app.presenters.messages import line_title
 from app.rendering.band import band_width
 from core import __version__
 from core.document.garment_pattern import GarmentPattern
+from core.errors import UserError
 from core.export.pattern_csv import write_pieces, write_seams
 from core.export.pattern_data import pattern_values
 from core.export.pattern_dxf import write_pattern_dxf
@@ -22,11 +23,14 @@ from core.export.pattern_svg import write_pattern_svg
 from core.export.report_data import Heading
 from core.files.atomic_write import write_text
 from core.garment.cut_list import CutList, cut_list_of
+from core.geometry.mesh import Points
+from core.messages import Message
 from core.pattern.allowance import CutPiece, cut_piece
 from core.pattern.edge_elastics import edge_elastics, lines_on_edges
-from core.pattern.garment import Pattern
+from core.pattern.garment import Pattern, pattern_of
 from core.pattern.layout import PAPERS, Tiling, lay_out, lay_out_on_tiles, whole_sheet
 from core.pattern.piece import EdgeElastic, Piece, SideKey
+from core.pipeline.build import Stages
 from core.pipeline.warnings import ShownState
 
 SHEET = "sheet"
@@ -76,6 +80,20 @@ def cut_pattern(pattern: Pattern, plan: GarmentPattern, shown: ShownState, *, st
     widths = {name: band_width(name, design) for name in names}
     straps = strip_pieces(shown, cuts, lines_on_edges(pattern, cuts), titles, widths) if strips else ()
     return CutPattern(plan, pattern, cuts, elastics, pattern.pieces(plan.allowance, elastics), straps)
+
+
+def pattern_or_reason(stages: Stages, vertices: Points) -> Pattern | Message | None:
+    """Return the pattern of a design on its reshaped body, vertices (n, 3) [mm], or why there is none.
+
+    None for a design without a pattern.
+    """
+    plan = stages.design.pattern
+    if plan is None:
+        return None
+    try:
+        return pattern_of(stages, vertices, plan)
+    except UserError as error:
+        return error.text
 
 
 def tiling_of(cut: CutPattern, paper: str) -> Tiling:

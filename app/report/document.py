@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 from PySide6.QtGui import QImage
 
 from core.export.report_data import Report
+from core.messages import Message
+from core.pattern.garment import Pattern
 
 SHOTS = ("front before", "front after", "side before", "side after")
 """The pictures of a sheet, in the order in which they stand."""
@@ -18,8 +20,11 @@ SHOT_SIZES = {"front": (54.0, 60.0), "side": (37.0, 60.0)}
 
 @dataclass(frozen=True, eq=False)
 class ReportDocument:
-    """A sheet, its ``pictures`` by their names in ``SHOTS``, or none, and the ``colours`` of its lines."""
+    """A sheet, its ``pictures`` by their names in ``SHOTS``, or none, the ``colours`` of its lines, and the
+    ``pattern`` of the design, if it has one, or why its pieces cannot be had.
+    """
 
     report: Report
     pictures: Mapping[str, QImage] = field(default_factory=dict)
     colours: Mapping[str, str] = field(default_factory=dict)
+    pattern: Pattern | Message | None = None

@@ -16,6 +16,7 @@ from app.report.document import ReportDocument
 from app.report.header import WIDE, head_blocks
 from app.report.layout import Block, Column, PlacedBlock, place_blocks
 from app.report.painter import A4, MARGIN, PagePainter, elide, text_width
+from app.report.pattern_page import pattern_blocks
 from app.report.tables import (
     HALF,
     bullet,
@@ -73,6 +74,8 @@ def pages_of(handout: ReportDocument, language: str) -> Pages:
     """
     with using_language(language):
         placed = _first(handout)
+        if handout.pattern is not None:
+            placed += _pattern(handout, max(each.page for each in placed) + 1)
         placed += _appendix(handout, max(each.page for each in placed) + 1)
         return Pages(tuple(placed), max(each.page for each in placed) + 1, foot_words(handout.report))
 
@@ -112,6 +115,15 @@ def _appendix(handout: ReportDocument, page: int) -> list[PlacedBlock]:
             below = place_blocks(words, _halves(page, top + height + _GAP))[0]
     curves = PlacedBlock(page, MARGIN, top, curve_block(handout, height))
     return [PlacedBlock(page, MARGIN, MARGIN, title), curves, *below]
+
+
+def _pattern(handout: ReportDocument, page: int) -> list[PlacedBlock]:
+    """Return the page of the pattern pieces, which goes on where their tables are long."""
+    head, pieces, seams = pattern_blocks(handout)
+    placed, left = place_blocks(head, _whole(page))
+    for x, blocks in ((MARGIN, pieces), (MARGIN + WIDE - HALF, seams)):
+        placed += place_blocks(blocks, _halves_at(left, x))[0]
+    return placed
 
 
 def _cutting(handout: ReportDocument) -> list[Block]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -65,6 +66,13 @@ class Frame:
     seconds: float
     changed_at: int
     lower: RegionFrame | None = None
+
+    @cached_property
+    def vertices(self) -> Points:
+        """Return the vertices of the whole body as it is shown, (n, 3) [mm]."""
+        whole = np.array(self.stages.body.mesh.vertices)
+        whole[self.stages.skin.vertices] = self.points
+        return whole
 
     @property
     def line_lengths(self) -> Mapping[str, float]:

@@ -15,6 +15,7 @@ from app.cli.design import design_of
 from app.cli.options import add_lines, add_scan
 from app.cli.output import finish
 from app.cli.solved_design import SolvedDesign, solve_design
+from app.presenters.pattern_files import pattern_or_reason
 from app.rendering.display import off_screen
 from core.analysis.uncertainty.estimate import estimate_uncertainty
 from core.document.design import Design
@@ -161,7 +162,8 @@ def _write(solution: Solution, sheet: Report, how: ReportOptions) -> list[str]:
 
     application(unit=how.length_unit)
     names = [line.name for line in solution.stages.drawn_lines]
-    handout = ReportDocument(sheet, {}, line_colours(names, solution.stages.design))
+    pattern = pattern_or_reason(solution.stages, solution.body.vertices)
+    handout = ReportDocument(sheet, {}, line_colours(names, solution.stages.design), pattern)
     title = " ".join(filter(None, (sheet.heading.customer, sheet.heading.project)))
     fresh = not Path(how.out).exists()
     if fresh:

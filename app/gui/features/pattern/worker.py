@@ -7,16 +7,14 @@ import threading
 from dataclasses import dataclass
 from functools import partial
 
-import numpy as np
 from PySide6.QtCore import QObject, Signal
 
 from app.gui.session.jobs import Job, Jobs
 from app.i18n.catalog import tr
 from core.document.block import Block
 from core.document.garment_pattern import GarmentPattern
-from core.geometry.mesh import Points
 from core.pattern.cloth_library import cloths_of
-from core.pattern.garment import CutGarment, Pattern, cut_garment
+from core.pattern.garment import CutGarment, Pattern, cut_garment, worn_skin
 from core.pattern.places import BodyPlaces
 from core.pattern.seam_curves import SeamDrawing
 from core.pattern.seam_matching import Matched
@@ -40,14 +38,6 @@ class PatternResult:
     request: PatternRequest
     pattern: Pattern
     drawing: SeamDrawing
-
-
-def worn_skin(frame: Frame) -> Points:
-    """Return the vertices of the shown body without the noise of the scanner, (n, 3) [mm]."""
-    body, moving = frame.stages.body, frame.stages.skin.vertices
-    worn = np.array(body.smoothed.vertices)
-    worn[moving] += frame.points - body.mesh.vertices[moving]
-    return worn
 
 
 class PatternWorker(QObject):
@@ -111,7 +101,7 @@ class PatternWorker(QObject):
             garment = self._garment_of(drawing, request.plan.block)
             cloths = cloths_of(request.plan)
             former = None if request.final else self._matched
-            pattern = garment.flat(worn_skin(request.frame), cloths, former)
+            pattern = garment.flat(worn_skin(request.frame.stages, request.frame.vertices), cloths, former)
             self._matched = pattern.matched
             return PatternResult(request, pattern, drawing)
 

@@ -21,6 +21,7 @@ from app.gui.widgets.file_dialogs import ask_save
 from app.i18n.catalog import language, tr
 from app.presenters.lines import line_colours
 from app.presenters.messages import render
+from app.presenters.pattern_files import pattern_or_reason
 from app.rendering.ambient_occlusion import bake_occlusion
 from app.report.document import ReportDocument
 from app.report.pages import Pages, pages_of
@@ -31,6 +32,8 @@ from core.export.report_data import Heading, Report, make_report
 from core.export.report_data_file import report_csv, report_json
 from core.files.atomic_write import write_text
 from core.geometry.mesh import Floats
+from core.messages import Message
+from core.pattern.garment import Pattern
 from core.pipeline.converged import converged_frame
 from core.pipeline.live_solver import Frame
 from core.progress import Progress
@@ -158,21 +161,23 @@ class ReportController(QObject):
         self._asked = frame
         body, known = frame.stages.body, self._occlusion
 
-        def work(progress: Progress) -> tuple[Report, Frame, Floats]:
+        def work(progress: Progress) -> tuple[Report, Frame, Pattern | Message | None, Floats]:
             # From rest, as the command line and who opens the project again: turns that went on from a former
             # design end a hair beside, and would be plotted as if the garment began there.
             design = frame.stages.design
             whole = converged_frame(design, frame.stages, lambda what, share: progress(what, 0.1 * share))
             sheet = make_report(whole, whole.tracks.get(design.volume, ()), heading, progress)
             baked = known[1] if known is not None and known[0] is body else bake_occlusion(body.mesh)
-            return sheet, whole, baked
+            pattern = pattern_or_reason(whole.stages, whole.vertices)
+            return sheet, whole, pattern, baked
 
         def draw(found: object) -> None:
             from app.report.images import render_images  # noqa: PLC0415 (brings VTK along)
 
-            sheet, whole, baked = cast(tuple[Report, Frame, Floats], found)
+            sheet, whole, pattern, baked = cast(tuple[Report, Frame, Pattern | Message | None, Floats], found)
             self._occlusion, self._whole = (body, baked), whole
-            finish, left = partial(done, ReportDocument(sheet, {}, self._colours(frame))), self._leave_off
+            document = ReportDocument(sheet, {}, self._colours(frame), pattern)
+            finish, left = partial(done, document), self._leave_off
             drawing, pieces = tr("Drawing report images"), render_images(whole, baked)
             self._job = context.jobs.run_pieces(drawing, pieces, finish, lambda _: finish({}), left=left)
 
