@@ -30,7 +30,7 @@ from core.export.pattern_strips import strip_pieces, uncut_strips
 from core.export.pattern_svg import write_pattern_svg
 from core.export.report_data import Heading
 from core.files.atomic_write import write_text
-from core.garment.cut_list import CutList, cut_list_of
+from core.garment.cut_list import cut_list_of
 from core.messages import Message
 from core.pattern.allowance import CutPiece, cut_piece
 from core.pattern.annotation import elastic_words
@@ -51,15 +51,18 @@ _FILES = ("dxf", "svg", "pdf", "plt", "pieces", "seams", "json", "save_block")
 
 @dataclass(frozen=True)
 class _Cut:
-    """A pattern with the ``pieces`` and ``strips`` to cut, and the ``elastics`` of its edges."""
+    """A pattern with the ``pieces`` and ``strips`` to cut, and the ``elastics`` of its edges.
+
+    ``uncut`` are lines of which no strip can be cut.
+    """
 
     plan: GarmentPattern
     pattern: Pattern
     solved: SolvedDesign
-    cuts: CutList
     elastics: Mapping[SideKey, EdgeElastic]
     pieces: tuple[Piece, ...]
     strips: tuple[Piece, ...]
+    uncut: tuple[str, ...]
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -155,8 +158,10 @@ def _cut(plan: GarmentPattern, solved: SolvedDesign, *, strips: bool) -> _Cut:
     names = [row.line for row in cuts.rows]
     titles = {name: line_title(name, design) for name in names}
     widths = {name: band_width(name, design) for name in names}
-    straps = strip_pieces(shown, cuts, lines_on_edges(pattern, cuts), titles, widths) if strips else ()
-    return _Cut(plan, pattern, solved, cuts, elastics, pattern.pieces(plan.allowance, elastics), straps)
+    on_edges = lines_on_edges(pattern, cuts)
+    straps = strip_pieces(shown, cuts, on_edges, titles, widths) if strips else ()
+    uncut = uncut_strips(cuts, on_edges) if strips else ()
+    return _Cut(plan, pattern, solved, elastics, pattern.pieces(plan.allowance, elastics), straps, uncut)
 
 
 def _listed() -> Iterator[str]:
@@ -189,10 +194,8 @@ def _elastics(cut: _Cut) -> Iterator[str]:
         flat = next(flat for flat in cut.pattern.flats if flat.panel.name == piece)
         words = elastic_words(each.line, each.part_mm, each.cut_mm)
         yield f"{piece}, {flat.panel.sides[number].name}: {words}"
-    if cut.strips:
-        yield from (f"Strip: {each.name}, {each.cloth}" for each in cut.strips)
-        on_edges = lines_on_edges(cut.pattern, cut.cuts)
-        yield from (f"No strip of {name}: busk cut says why." for name in uncut_strips(cut.cuts, on_edges))
+    yield from (f"Strip: {each.name}, {each.cloth}" for each in cut.strips)
+    yield from (f"No strip of {name}: busk cut says why." for name in cut.uncut)
 
 
 def _write(cut: _Cut, options: Namespace) -> Iterator[str]:
