@@ -18,11 +18,11 @@ from core.export.pattern_csv import write_pieces, write_seams
 from core.export.pattern_data import pattern_values
 from core.export.pattern_dxf import write_pattern_dxf
 from core.export.pattern_plt import write_pattern_plt
-from core.export.pattern_strips import strip_pieces
+from core.export.pattern_strips import strip_pieces, uncut_strips
 from core.export.pattern_svg import write_pattern_svg
 from core.export.report_data import Heading
 from core.files.atomic_write import write_text
-from core.garment.cut_list import CutList, cut_list_of
+from core.garment.cut_list import cut_list_of
 from core.geometry.mesh import Points
 from core.messages import Message
 from core.pattern.allowance import CutPiece, cut_piece
@@ -54,14 +54,17 @@ ENDINGS = {
 
 @dataclass(frozen=True)
 class CutPattern:
-    """A pattern with the ``pieces`` and ``strips`` to cut, the ``elastics`` of its edges and the cut list."""
+    """A pattern with the ``pieces`` and ``strips`` to cut, and the ``elastics`` of its edges.
+
+    ``uncut`` are lines of which no strip can be cut.
+    """
 
     plan: GarmentPattern
     pattern: Pattern
-    cuts: CutList
     elastics: Mapping[SideKey, EdgeElastic]
     pieces: tuple[Piece, ...]
     strips: tuple[Piece, ...]
+    uncut: tuple[str, ...]
 
     def shapes(self) -> tuple[CutPiece, ...]:
         """Return all pieces and strips with their allowances. Raises PatternError."""
@@ -78,8 +81,10 @@ def cut_pattern(pattern: Pattern, plan: GarmentPattern, shown: ShownState, *, st
     names = [row.line for row in cuts.rows]
     titles = {name: line_title(name, design) for name in names}
     widths = {name: band_width(name, design) for name in names}
-    straps = strip_pieces(shown, cuts, lines_on_edges(pattern, cuts), titles, widths) if strips else ()
-    return CutPattern(plan, pattern, cuts, elastics, pattern.pieces(plan.allowance, elastics), straps)
+    on_edges = lines_on_edges(pattern, cuts)
+    straps = strip_pieces(shown, cuts, on_edges, titles, widths) if strips else ()
+    uncut = uncut_strips(cuts, on_edges) if strips else ()
+    return CutPattern(plan, pattern, elastics, pattern.pieces(plan.allowance, elastics), straps, uncut)
 
 
 def pattern_or_reason(stages: Stages, vertices: Points) -> Pattern | Message | None:

@@ -19,14 +19,12 @@ from core.document.design import Design
 from core.document.garment_pattern import GarmentPattern
 from core.document.lower_trunk import LowerTrunk
 from core.errors import PatternError
-from core.export.pattern_strips import uncut_strips
 from core.export.report_data import Heading
 from core.messages import Message
 from core.pattern.annotation import elastic_words
 from core.pattern.block_library import built_in_blocks, find_block, read_block, write_block
 from core.pattern.cloth_csv import read_cloth, write_template
 from core.pattern.cloth_library import ALL_PIECES, built_in, find_cloth, with_cloth
-from core.pattern.edge_elastics import lines_on_edges
 from core.pattern.garment import pattern_of
 from core.pattern.layout import PAPERS, Tiling
 
@@ -150,10 +148,8 @@ def _elastics(cut: CutPattern) -> Iterator[str]:
         flat = next(flat for flat in cut.pattern.flats if flat.panel.name == piece)
         words = elastic_words(each.line, each.part_mm, each.cut_mm)
         yield f"{piece}, {flat.panel.sides[number].name}: {words}"
-    if cut.strips:
-        yield from (f"Strip: {each.name}, {each.cloth}" for each in cut.strips)
-        on_edges = lines_on_edges(cut.pattern, cut.cuts)
-        yield from (f"No strip of {name}: busk cut says why." for name in uncut_strips(cut.cuts, on_edges))
+    yield from (f"Strip: {each.name}, {each.cloth}" for each in cut.strips)
+    yield from (f"No strip of {name}: busk cut says why." for name in cut.uncut)
 
 
 def _write(cut: CutPattern, solved: SolvedDesign, options: Namespace) -> Iterator[str]:
