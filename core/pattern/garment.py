@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
-from core.document.block import Block
+from core.document.block import RING, ROOT, Block
 from core.document.cloth import Cloth
 from core.document.garment_pattern import ALLOWANCE
 from core.geometry.mesh import Points
 from core.landmarks.types import SIDES
+from core.pattern.bridging import bridged_cut
 from core.pattern.flattening import FlatPanel, StrainSummary, strain_summary
 from core.pattern.notches import notched
 from core.pattern.panel import Panel, PanelSeed, cut_panels
@@ -43,14 +44,19 @@ class CutGarment:
         )
 
 
-def cut_garment(drawing: SeamDrawing, block: Block) -> CutGarment:
-    """Cut a block on a body. Raises PatternError, LineError for a body that it does not fit."""
+def cut_garment(drawing: SeamDrawing, block: Block, is_bridged: bool = True) -> CutGarment:
+    """Cut a block on a body, its cloth over hollows where it ``is_bridged``, but not along wires.
+
+    Raises PatternError, LineError for a body that it does not fit.
+    """
     curves = drawing.curves(block)
     cut = cut_surface(
         drawing.places.skin,
         tuple(SurfaceCurve(each.name, each.points, each.seam.slit, each.seam.edge) for each in curves),
     )
-    return CutGarment(block, curves, cut_panels(cut, tuple(_seeds(drawing, block, curves))))
+    wires, bands = ([at for at, each in enumerate(curves) if each.seam.kind == kind] for kind in (ROOT, RING))
+    bridge = partial(bridged_cut, wires=wires, bands=bands) if is_bridged else None
+    return CutGarment(block, curves, cut_panels(cut, tuple(_seeds(drawing, block, curves)), bridge=bridge))
 
 
 def _seeds(drawing: SeamDrawing, block: Block, curves: Sequence[SeamCurve]) -> list[PanelSeed]:
