@@ -84,6 +84,24 @@ class ClothName(Name):
     context = "cloth"
 
 
+class BlockName(Name):
+    """The title of a block, built-in or of the user's own."""
+
+    context = "block"
+
+
+class PieceName(Name):
+    """The name of a piece of a block, with its side if it has one: "lower cup left"."""
+
+    context = "piece"
+
+
+class SeamName(Name):
+    """The name of a seam or edge of a block, with its side if it has one: "wing top left"."""
+
+    context = "seam"
+
+
 @dataclass(frozen=True)
 class Length:
     """A length [mm], shown in the unit in use; ``digits`` are its decimals in millimetres."""

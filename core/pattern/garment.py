@@ -26,11 +26,15 @@ from core.pattern.surface_trace import SurfaceCurve
 
 @dataclass(frozen=True, eq=False)
 class CutGarment:
-    """A ``block`` on the skin of a body at rest: its ``curves``, and ``panels`` that ride on the skin."""
+    """A ``block`` on the skin of a body at rest: its ``curves``, and ``panels`` that ride on the skin.
+
+    Where it ``is_bridged``, panels are taut over the hollows of the skin.
+    """
 
     block: Block
     curves: tuple[SeamCurve, ...]
     panels: tuple[Panel, ...]
+    is_bridged: bool = True
 
     def flat(self, vertices: Points, cloths: Mapping[str, Cloth], former: Matched | None = None) -> Pattern:
         """Return the pattern on a skin with these ``vertices`` (n, 3) [mm], from ``cloths`` by their names.
@@ -56,7 +60,8 @@ def cut_garment(drawing: SeamDrawing, block: Block, is_bridged: bool = True) -> 
     )
     wires, bands = ([at for at, each in enumerate(curves) if each.seam.kind == kind] for kind in (ROOT, RING))
     bridge = partial(bridged_cut, wires=wires, bands=bands) if is_bridged else None
-    return CutGarment(block, curves, cut_panels(cut, tuple(_seeds(drawing, block, curves)), bridge=bridge))
+    panels = cut_panels(cut, tuple(_seeds(drawing, block, curves)), bridge=bridge)
+    return CutGarment(block, curves, panels, is_bridged)
 
 
 def _seeds(drawing: SeamDrawing, block: Block, curves: Sequence[SeamCurve]) -> list[PanelSeed]:
