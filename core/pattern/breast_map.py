@@ -52,6 +52,23 @@ class BreastMap:
         every = np.arange(RAYS) * (360.0 / RAYS)
         return np.asarray(np.interp(clock, every, self.root, period=360.0))
 
+    def clock(self, places: Points) -> Floats:
+        """Return the clock positions of ``places`` (n, 3) [mm], (n,) [degrees]."""
+        up = np.array([0.0, 0.0, 1.0])
+        upward = self.rays[[0, RAYS // 2]].reshape(-1, 3) - self.apex  # in the plane of the axis and up
+        outward = np.cross(unit(upward.sum(axis=0) * [1.0, 1.0, 0.0]), up)
+        outward *= np.sign(outward @ (self.rays[RAYS // 4, RAYS // 4] - self.apex))
+        off = places - self.apex
+        return np.asarray(np.degrees(np.arctan2(off @ outward, off @ up)) % 360.0)
+
+    def word(self, place: Points) -> str:
+        """Return the place of a block that is nearest to ``place`` (3,) [mm], "root 205*0.4" or "apex"."""
+        clock = float(self.clock(place[None])[0])
+        way = np.linspace(0.0, REACH, self.rays.shape[1])
+        far = way[np.linalg.norm(self.places(np.full(len(way), clock), way) - place, axis=1).argmin()]
+        share = float(far / self.root_distance(clock))
+        return "apex" if far <= STEP else f"root {clock:.0f}*{share:.2f}"
+
     def places(self, clock: Floats, distance: Floats) -> Points:
         """Return places of the skin at clock positions [degrees] and distances [mm], (n,), as (n, 3) [mm]."""
         turn = np.atleast_1d(clock) % 360.0 * (RAYS / 360.0)

@@ -1,22 +1,36 @@
 """Cloth over hollows: where the skin is hollow, a taut cloth leaves it, as between the breasts (ours).
 
 The cloth is a membrane that may leave the skin outward and not enter it: least squares of the slopes of its
-places, with one distance from the skin at each, none below 0. Garments pull more across than down.
+places, with one distance from the skin at each, none below 0. Garments pull more across than down. Where it
+is off the skin it slides: its places there are spread between those that lie on the skin, as shares of them,
+so that it rides on the body as the skin does.
 """
 
 from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from core.geometry.mesh import Faces, Flags, Floats, Points, boundary_loops, unit
+from core.geometry.mesh import Faces, Flags, Floats, Indices, Mesh, Points, area_vectors, boundary_loops, unit
+from core.pattern.surface_cut import CutSkin
 
 TENSION = (10.0, 1.0)
 """The tension of a cloth across the body and down [1]; ours."""
 
+EDGE, SEAM = 1000.0, 100.0
+"""The tension of an edge and a seam, that of so many mm of cloth down the body [mm]; ours."""
+
+LEAST = 0.2
+"""Nearer to the skin than this cloth lies on it [mm]; ours."""
+
 _ROUNDS = 60  # of finding out where the cloth lies on the skin; most hollows take ten
-_SMOOTHED = 12  # passes that smooth the directions in which the cloth may leave the skin
+_SHORTEST = 0.5  # steps of a cut skin may be shorter, but count as so long [mm]
+_REACH = 15.0  # of the place within the cloth that an edge is told from [mm]
+_SMOOTHED = 30.0  # over which the directions change in which cloth may leave the skin, across it [mm]
 
 
 def bridged(places: Points, faces: Faces, normals: Points, bridges: Flags | None = None) -> Points:
@@ -25,12 +39,127 @@ def bridged(places: Points, faces: Faces, normals: Points, bridges: Flags | None
     ``normals`` (n, 3) of the skin point outward. Only places that ``bridges`` (n,) may leave the skin, all of
     them if it is None.
     """
-    weights = _stiffness(places, faces)
-    ways = _smoothed(normals, faces)
-    stiff = _along(weights, ways)
-    force = np.einsum("nx,nx->n", ways, _without_edges(weights @ places, places, faces, normals))
     may = np.ones(len(places), dtype=bool) if bridges is None else bridges
-    return places + _lifted(stiff, force, may)[:, None] * ways
+    lifted, ways = _taut(_stiffness(places, faces), places, faces, normals, may)
+    return places + lifted[:, None] * ways
+
+
+def bridged_cut(cut: CutSkin, faces: Faces, wires: Sequence[int] = (), bands: Sequence[int] = ()) -> CutSkin:
+    """Return a ``cut`` skin whose ``faces`` (k, 3), those of a garment, are a taut cloth.
+
+    It stays on the skin along the curves with the numbers ``wires``; those of ``bands`` are elastic and span
+    only what is hollow along themselves.
+    """
+    used, own = np.unique(faces, return_inverse=True)
+    own = own.reshape(-1, 3)
+    may = np.ones(len(cut.vertices), dtype=bool)
+    for curve in wires:
+        may[cut.chains[curve]] = False
+    normals = Mesh(cut.vertices, cut.faces).vertex_normals[used]
+    places = cut.vertices[used]
+    weights = sparse.csr_array(
+        _stiffness(places, own)
+        + _strings(places, _inner_seams(cut, used, bands), EDGE)
+        + _strings(places, _inner_seams(cut, used, None), SEAM)
+    )
+    lifted, ways = _taut(weights, places, own, normals, may[used])
+    off = lifted > LEAST
+    if not off.any():
+        return cut
+    shares = sparse.coo_array(_spread(weights, places, own, places + lifted[:, None] * ways, off))
+    entries = (shares.data, (used[shares.coords[0]], used[shares.coords[1]]))
+    others = np.ones(len(cut.vertices))
+    others[used] = 0.0
+    spread = sparse.coo_array(entries, (len(others),) * 2).tocsr() + sparse.diags_array(others)
+    mix = sparse.csr_array(spread @ cut.mix)
+    return replace(cut, mix=mix, vertices=mix @ cut.skin.vertices)
+
+
+def _inner_seams(cut: CutSkin, used: Indices, curves: Sequence[int] | None) -> Indices:
+    """Return the steps of ``curves``, of all if None, between the vertices ``used``, (e, 2) of them."""
+    chosen = np.isin(cut.edges, used).all(axis=1)
+    if curves is not None:
+        chosen &= np.isin(cut.curve, np.array(curves, dtype=np.int64))
+    return np.searchsorted(used, cut.edges[chosen])
+
+
+def _spread(
+    weights: sparse.csr_array, places: Points, faces: Faces, lifted: Points, off: Flags
+) -> sparse.csr_array:
+    """Return all places as shares of those that lie on the skin, (n, n).
+
+    Those ``off`` it are at rest in a membrane of stiffness ``weights`` (n, n); edges stay where they were
+    ``lifted`` (n, 3) to within the plane of three places on the skin.
+    """
+    loops = boundary_loops(faces)
+    on_edge = np.zeros(len(places), dtype=bool)
+    on_edge[np.concatenate(loops)] = True
+    inner = off & ~on_edge
+    told = list(_edge_shares(loops, lifted, off, ~off & ~on_edge))
+    rows = np.repeat([row for row, _, _ in told], 3).astype(np.int64)
+    columns = np.array([column for _, own, _ in told for column in own], dtype=np.int64)
+    values = np.array([share for _, _, own in told for share in own])
+    resting = np.flatnonzero(~off)
+    entries = (
+        np.append(values, np.ones(len(resting))),
+        (np.append(rows, resting), np.append(columns, resting)),
+    )
+    known = sparse.csr_array(entries, shape=weights.shape)
+    if not inner.any():
+        return known
+    pull = sparse.csr_array(weights[inner][:, ~inner] @ known[~inner])
+    used = np.unique(pull.indices)
+    shares = -splu(sparse.csc_array(weights[inner][:, inner])).solve(pull[:, used].toarray())
+    rows = np.repeat(np.flatnonzero(inner), len(used))
+    spread = sparse.coo_array((shares.ravel(), (rows, np.tile(used, int(inner.sum())))), weights.shape)
+    return sparse.csr_array(known + spread)
+
+
+def _edge_shares(
+    loops: Sequence[Indices], lifted: Points, off: Flags, inside: Flags
+) -> Iterator[tuple[int, Indices, Floats]]:
+    """Yield each place of an edge that is off the skin, three places on the skin, and its shares of them.
+
+    They are where the edge leaves the skin, where it comes back, and one ``inside`` the cloth (n,).
+    """
+    within = np.flatnonzero(inside)
+    for loop in loops:
+        rests = np.flatnonzero(~off[loop])
+        for first, last in zip(rests, [*rests[1:], rests[:1].sum() + len(loop)], strict=True):
+            if last - first < 2:
+                continue
+            free = loop[np.arange(first + 1, last) % len(loop)]
+            one, two = loop[first], loop[last % len(loop)]
+            chord = lifted[two] - lifted[one]
+            reach = max(float(np.linalg.norm(chord)), _REACH)
+            away = np.linalg.norm(lifted[within] - 0.5 * (lifted[one] + lifted[two]), axis=1)
+            third = within[np.abs(away - reach).argmin()]
+            frame = np.stack([chord, lifted[third] - lifted[one]], axis=1)
+            along, aside = np.linalg.lstsq(frame, (lifted[free] - lifted[one]).T, rcond=1e-3)[0]
+            for place, b, c in zip(free.tolist(), along, aside, strict=True):
+                yield place, np.array([one, two, third]), np.array([1.0 - b - c, b, c])
+
+
+def _tension(normals: Points) -> Floats:
+    """Return the tension of cloth at places with these ``normals`` (n, 3), (n, 3, 3) [1].
+
+    The greater one runs round the body; under the crotch, where the skin lies level, it runs all ways.
+    """
+    across = unit(np.cross([0.0, 0.0, 1.0], normals) + 1e-12)
+    level = (normals[:, 2] ** 4)[:, None, None]
+    within = np.eye(3) - normals[:, :, None] * normals[:, None]
+    most = (1.0 - level) * across[:, :, None] * across[:, None] + level * within
+    return np.asarray(TENSION[1] * np.eye(3) + (TENSION[0] - TENSION[1]) * most)
+
+
+def _taut(
+    weights: sparse.csr_array, places: Points, faces: Faces, normals: Points, may: Flags
+) -> tuple[Floats, Points]:
+    """Return how far a taut cloth is off the skin, (n,) [mm], and in which directions, (n, 3)."""
+    ways = _smoothed(weights, places, faces, normals)
+    stiff = _along(weights, ways)
+    force = np.einsum("nx,nx->n", ways, _without_edges(weights @ places, faces, normals))
+    return _lifted(stiff, force, may), ways
 
 
 def _lifted(stiff: sparse.csr_array, force: Floats, may: Flags) -> Floats:
@@ -57,28 +186,35 @@ def _stiffness(places: Points, faces: Faces) -> sparse.csr_array:
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     double = np.maximum(np.linalg.norm(normal, axis=1), 1e-12)
     normal /= double[:, None]
-    across = unit(np.cross([0.0, 0.0, 1.0], normal) + 1e-12)
     slopes = np.cross(normal[:, None], np.roll(corners, -2, axis=1) - np.roll(corners, -1, axis=1))
     slopes /= double[:, None, None]
-    along, down = (np.einsum("mcx,mx->mc", slopes, way) for way in (across, np.cross(normal, across)))
-    parts = (
-        pull * np.einsum("mi,mj->mij", way, way) for pull, way in zip(TENSION, (along, down), strict=True)
-    )
-    values = 0.5 * double[:, None, None] * sum(parts)
+    values = 0.5 * double[:, None, None] * (slopes @ _tension(normal) @ slopes.transpose(0, 2, 1))
     row, column = np.repeat(faces, 3, axis=1), np.tile(faces, 3)
-    return sparse.csr_array((values.ravel(), (row.ravel(), column.ravel())), shape=(len(places),) * 2)
+    cloth = sparse.csr_array((values.ravel(), (row.ravel(), column.ravel())), shape=(len(places),) * 2)
+    return sparse.csr_array(cloth + _strings(places, _edges(faces), EDGE))
 
 
-def _without_edges(force: Points, places: Points, faces: Faces, normals: Points) -> Points:
-    """Return the forces of a membrane, (n, 3), without the pull of the cloth on its own edges.
+def _strings(places: Points, lines: Indices, tension: float) -> sparse.csr_array:
+    """Return the stiffness of ``lines`` (e, 2), edges or seams, under a ``tension`` [mm], (n, n) [1]."""
+    first, second = lines.T
+    length = np.maximum(np.linalg.norm(places[second] - places[first], axis=1), _SHORTEST)
+    pull = sparse.csr_array((tension / length, (first, second)), shape=(len(places),) * 2)
+    pull = sparse.csr_array(pull + pull.T)
+    return sparse.csr_array(sparse.diags_array(pull.sum(axis=1)) - pull)
+
+
+def _edges(faces: Faces) -> Indices:
+    return np.concatenate([np.stack([at, np.roll(at, -1)], axis=1) for at in boundary_loops(faces)])
+
+
+def _without_edges(force: Points, faces: Faces, normals: Points) -> Points:
+    """Return the forces of a membrane, (n, 3), at its edges only those towards the skin or off it.
 
     An edge is held by what it is sewn to: without that the cloth would draw back from it, and off the skin.
     """
     force = force.copy()
     for loop in boundary_loops(faces):
-        along = places[np.roll(loop, -1)] - places[np.roll(loop, 1)]
-        aside = unit(np.cross(along, normals[loop]))
-        force[loop] -= np.einsum("nx,nx->n", force[loop], aside)[:, None] * aside
+        force[loop] = np.einsum("nx,nx->n", force[loop], normals[loop])[:, None] * normals[loop]
     return force
 
 
@@ -90,13 +226,9 @@ def _along(weights: sparse.csr_array, ways: Points) -> sparse.csr_array:
     return sparse.csr_array((turned, (row, column)), shape=weights.shape)
 
 
-def _smoothed(normals: Points, faces: Faces) -> Points:
-    """Return directions that change slowly from place to place, (n, 3) [1]."""
-    ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    ones = np.ones(len(ends))
-    near = sparse.csr_array((ones, (ends[:, 0], ends[:, 1])), shape=(len(normals),) * 2)
-    near = sparse.csr_array(near + near.T + sparse.eye_array(len(normals)))
-    ways = normals
-    for _ in range(_SMOOTHED):
-        ways = unit(np.asarray(near @ ways))
-    return ways
+def _smoothed(weights: sparse.csr_array, places: Points, faces: Faces, normals: Points) -> Points:
+    """Return directions that change slowly from place to place, so that they lead out of a cleft, (n, 3)."""
+    corner = np.repeat(np.linalg.norm(area_vectors(places, faces), axis=1) / 3.0, 3)
+    share = np.bincount(faces.ravel(), corner, len(places)) + 1e-6
+    spread = sparse.diags_array(share) + _SMOOTHED**2 / TENSION[0] * weights
+    return unit(splu(sparse.csc_array(spread)).solve(share[:, None] * normals))

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
-from core.document.block import Block, Seam
+from core.document.block import RING, ROOT, Block, Seam
 from core.document.cloth import Cloth
 from core.document.garment_pattern import ALLOWANCE, GarmentPattern
 from core.geometry.mesh import Points
 from core.landmarks.types import SIDES
 from core.messages import ClothName, Length, Message, PieceName, SeamName
+from core.pattern.bridging import bridged_cut
 from core.pattern.cloth_library import cloths_of
 from core.pattern.flattening import FlatPanel, StrainSummary, strain_summary
 from core.pattern.notches import notched
@@ -38,11 +39,15 @@ LOOSE, LOOSE_AREA = -0.02, 0.05
 
 @dataclass(frozen=True, eq=False)
 class CutGarment:
-    """A ``block`` on the skin of a body at rest: its ``curves``, and ``panels`` that ride on the skin."""
+    """A ``block`` on the skin of a body at rest: its ``curves``, and ``panels`` that ride on the skin.
+
+    Where it ``is_bridged``, panels are taut over the hollows of the skin.
+    """
 
     block: Block
     curves: tuple[SeamCurve, ...]
     panels: tuple[Panel, ...]
+    is_bridged: bool = True
 
     def flat(self, vertices: Points, cloths: Mapping[str, Cloth], former: Matched | None = None) -> Pattern:
         """Return the pattern on a skin with these ``vertices`` (n, 3) [mm], from ``cloths`` by their names.
@@ -63,14 +68,20 @@ class CutGarment:
             return None
 
 
-def cut_garment(drawing: SeamDrawing, block: Block) -> CutGarment:
-    """Cut a block on a body. Raises PatternError, LineError for a body that it does not fit."""
+def cut_garment(drawing: SeamDrawing, block: Block, is_bridged: bool = True) -> CutGarment:
+    """Cut a block on a body, its cloth over hollows where it ``is_bridged``, but not along wires.
+
+    Raises PatternError, LineError for a body that it does not fit.
+    """
     curves = drawing.curves(block)
     cut = cut_surface(
         drawing.places.skin,
         tuple(SurfaceCurve(each.name, each.points, each.seam.slit, each.seam.edge) for each in curves),
     )
-    return CutGarment(block, curves, cut_panels(cut, tuple(_seeds(drawing, block, curves))))
+    wires, bands = ([at for at, each in enumerate(curves) if each.seam.kind == kind] for kind in (ROOT, RING))
+    bridge = partial(bridged_cut, wires=wires, bands=bands) if is_bridged else None
+    panels = cut_panels(cut, tuple(_seeds(drawing, block, curves)), bridge=bridge)
+    return CutGarment(block, curves, panels, is_bridged)
 
 
 def _seeds(drawing: SeamDrawing, block: Block, curves: Sequence[SeamCurve]) -> list[PanelSeed]:
@@ -93,7 +104,7 @@ def pattern_of(stages: Stages, worn_vertices: Points, plan: GarmentPattern) -> P
     Raises PatternError, LineError for a body or cloths that the block does not fit.
     """
     cloths = cloths_of(plan)
-    garment = cut_garment(SeamDrawing(BodyPlaces.of(stages)), plan.block)
+    garment = cut_garment(SeamDrawing(BodyPlaces.of(stages)), plan.block, plan.bridged)
     return garment.flat(worn_skin(stages, worn_vertices), cloths)
 
 

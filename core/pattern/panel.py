@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -22,6 +23,9 @@ SPACINGS = (5.0, 9.0)
 """The distance of points of small and of large panels [mm]. Source: measured, see ``spacing_of``."""
 
 UP = (0.0, 0.0, 1.0)
+
+Bridge = Callable[[CutSkin, Faces], CutSkin]
+"""What moves the faces of a garment, (k, 3) of the cut skin, to where its cloth is."""
 
 _LEVEL = 0.2
 """A panel whose slope upward is in the mean less than this lies level [1]. Source: ours."""
@@ -87,15 +91,23 @@ def spacing_of(area: float) -> float:
 
 
 def cut_panels(
-    cut: CutSkin, seeds: tuple[PanelSeed, ...], spacing: float | None = None, up: tuple[float, ...] = UP
+    cut: CutSkin,
+    seeds: tuple[PanelSeed, ...],
+    spacing: float | None = None,
+    up: tuple[float, ...] = UP,
+    bridge: Bridge | None = None,
 ) -> tuple[Panel, ...]:
     """Return the panels round ``seeds`` on a ``cut`` skin; ``up`` is the direction of their grain lines.
 
     Points are ``spacing`` [mm] apart, or as it suits the panel's area. Neighbours have the same points on
-    their seams. Raises PatternError where a panel is open or in the way of another.
+    their seams. ``bridge`` moves the skin of all panels to where cloth spans its
+    hollows. Raises PatternError where a panel is open or in the way of another.
     """
     net = seam_net(cut)
     regions = skin_regions(net, tuple(seed.name for seed in seeds), np.array([seed.place for seed in seeds]))
+    if bridge is not None:
+        cut = bridge(cut, np.concatenate([region.source[region.faces] for region in regions]))
+        net, regions = replace(net, cut=cut), tuple(region.on(cut.vertices) for region in regions)
     steps = [spacing or spacing_of(region.area) for region in regions]
     finest: dict[int, float] = {}
     for region, step in zip(regions, steps, strict=True):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -108,6 +108,10 @@ class SkinRegion:
     slits: tuple[Run, ...]
     area: float
 
+    def on(self, vertices: Points) -> SkinRegion:
+        """Return the same where the cut skin has these ``vertices`` (w, 3) [mm]."""
+        return replace(self, area=_area(vertices[self.source], self.faces))
+
 
 def skin_regions(net: SeamNet, names: tuple[str, ...], seeds: Points) -> tuple[SkinRegion, ...]:
     """Return the skin round each of ``seeds`` (s, 3) [mm] as far as curves, those that are no slits.
@@ -171,8 +175,11 @@ def _region(net: SeamNet, rows: Indices, name: str) -> SkinRegion:
     characteristic = len(source) - (len(sides) + int(border.sum())) // 2 + len(faces)
     if characteristic != 1 or not runs:
         raise _not_a_disc(net, Message('The panel "{name}" has no single closed outline.', name=name))
-    area = float(np.linalg.norm(area_vectors(cut.vertices[source], faces), axis=1).sum())
-    return SkinRegion(faces, source, runs, tuple(slits), area)
+    return SkinRegion(faces, source, runs, tuple(slits), _area(cut.vertices[source], faces))
+
+
+def _area(places: Points, faces: Faces) -> float:
+    return float(np.linalg.norm(area_vectors(places, faces), axis=1).sum())
 
 
 def _keys(sides: Indices) -> Indices:

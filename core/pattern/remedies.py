@@ -1,0 +1,224 @@
+"""Ways out for a piece that is more than its cloth takes up: a dart, another cloth, one more seam.
+
+Each is tried: the block is changed, cut again on the body, and all its pieces are matched.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from core.document.block import WAY, Block, PanelPlan, Seam
+from core.errors import UserError
+from core.geometry.mesh import Flags, Points
+from core.landmarks.types import SIDES
+from core.messages import ClothName, Message, PieceName, SeamName
+from core.pattern.breast_map import BreastMap
+from core.pattern.dart_chart import CLEAR, Dart, DartChart, dart_chart
+from core.pattern.garment import CutGarment, Pattern, cut_garment
+from core.pattern.panel import Panel
+from core.pattern.seam_curves import SeamDrawing
+from core.progress import Progress, quiet
+
+DART, CLOTH, SEAM = "dart", "cloth", "seam"
+
+MOST_CLOTHS, MOST_DARTS = 2, 2
+"""Cloths and darts that are offered for a piece."""
+
+_APART = 40.0  # darts start at least so far from each other [degrees]
+_ORDER = (DART, CLOTH, SEAM)  # what is offered first where both fit
+
+
+@dataclass(frozen=True)
+class Remedy:
+    """A changed ``block`` in which a piece has less strain: ``left`` on 95 % of its area [1], measured.
+
+    ``kind`` is DART, CLOTH or SEAM. ``limit`` [1] is that of its cloth, ``fits`` whether all that the piece
+    has become fit, ``others`` how many other pieces do not.
+    """
+
+    kind: str
+    message: Message
+    block: Block
+    left: float
+    limit: float
+    fits: bool
+    others: int
+
+
+@dataclass(frozen=True, eq=False)
+class _Change:
+    kind: str
+    message: Message
+    block: Block
+    plans: tuple[str, ...]
+
+
+def remedies(
+    pattern: Pattern, piece: str, drawing: SeamDrawing, vertices: Points, progress: Progress = quiet
+) -> tuple[Remedy, ...]:
+    """Return ways out for the piece of this name, with its side, best first: those that fit, least change.
+
+    ``drawing`` is of the body on which the pattern was cut, ``vertices`` (n, 3) [mm] where it is laid flat.
+    A dart or seam is offered near a breast alone. None that leaves more strain is returned. Raises Cancelled.
+    """
+    panel = next(each for each in pattern.garment.panels if each.name == piece)
+    before = pattern.strains[piece].within
+    changes = [*_cloths(pattern, panel), *_cuts(pattern, panel, drawing, progress)]
+    found = []
+    for number, change in enumerate(changes):
+        progress("remedies", 0.3 + 0.7 * number / len(changes))
+        remedy = _tried(change, pattern, drawing, vertices)
+        if remedy is not None and (remedy.fits or remedy.left < before):
+            found.append(remedy)
+    progress("remedies", 1.0)
+    found.sort(key=lambda each: (not each.fits, each.others, _ORDER.index(each.kind), each.left / each.limit))
+    cloths = [each for each in found if each.kind == CLOTH][:MOST_CLOTHS]
+    return tuple(each for each in found if each.kind != CLOTH or each in cloths)
+
+
+def _tried(change: _Change, pattern: Pattern, drawing: SeamDrawing, vertices: Points) -> Remedy | None:
+    """Return what a change is measured to leave; None where it cannot be cut."""
+    try:
+        if change.kind == CLOTH:
+            garment = _with_cloths(pattern.garment, change.block)
+        else:
+            garment = cut_garment(drawing, change.block, pattern.garment.is_bridged)
+        tried = garment.flat(vertices, pattern.cloths)
+    except UserError:
+        return None
+    own = [flat for flat in tried.flats if _plan_name(flat.panel.name) in change.plans]
+    left = max(tried.strains[flat.panel.name].within for flat in own)
+    limit = min(tried.cloths[flat.panel.cloth].limit for flat in own)
+    others = sum(not tried.fits(flat) for flat in tried.flats if flat not in own)
+    message = change.message.fill(left=f"{100.0 * left:.1f}", limit=f"{100.0 * limit:g}")
+    return Remedy(change.kind, message, change.block, left, limit, all(map(tried.fits, own)), others)
+
+
+def _with_cloths(garment: CutGarment, block: Block) -> CutGarment:
+    """Return the same panels of the cloths of a block."""
+    cloths = {plan.name: plan.cloth for plan in block.panels}
+    panels = tuple(replace(each, cloth=cloths[_plan_name(each.name)]) for each in garment.panels)
+    return replace(garment, block=block, panels=panels)
+
+
+def _plan_name(panel: str) -> str:
+    return panel.removesuffix(" left").removesuffix(" right")
+
+
+def _cloths(pattern: Pattern, panel: Panel) -> Iterator[_Change]:
+    """Yield the cloths that take up more than that of a panel, and could take up its strain."""
+    block, name = pattern.garment.block, _plan_name(panel.name)
+    own, needed = pattern.cloths[panel.cloth].limit, pattern.strains[panel.name].within
+    for cloth in sorted(pattern.cloths.values(), key=lambda each: each.limit):
+        if cloth.limit > max(own, 0.8 * needed):
+            plans = tuple(replace(p, cloth=cloth.name) if p.name == name else p for p in block.panels)
+            message = Message("{cloth}: {left} % of {limit} %.", cloth=ClothName(cloth.title))
+            yield _Change(CLOTH, message, replace(block, panels=plans), (name,))
+
+
+def _cuts(pattern: Pattern, panel: Panel, drawing: SeamDrawing, progress: Progress) -> list[_Change]:
+    """Return darts and one more seam, for a piece that a breast shapes."""
+    number = pattern.garment.panels.index(panel)
+    breast = _breast_of(panel, pattern.places[number], drawing)
+    if breast is None:
+        return []
+    cloth = pattern.cloths[panel.cloth]
+    chart = dart_chart(
+        panel, pattern.places[number], cloth, breast=breast, progress=lambda _, s: progress("darts", 0.3 * s)
+    )
+    chosen: list[Dart] = []
+    for dart in sorted(chart.darts, key=lambda each: each.within):
+        if all(abs((_clock(dart) - _clock(other) + 180.0) % 360.0 - 180.0) >= _APART for other in chosen):
+            chosen.append(dart)
+    plan = next(p for p in pattern.garment.block.panels if p.name == _plan_name(panel.name))
+    changes = [_with_dart(pattern.garment.block, plan, dart, breast) for dart in chosen[:MOST_DARTS]]
+    if chosen:
+        changes += _with_seam(pattern, plan, panel, chosen[0], chart, breast)
+    return changes
+
+
+def _clock(dart: Dart) -> float:
+    assert dart.clock is not None
+    return dart.clock
+
+
+def _breast_of(panel: Panel, places: Points, drawing: SeamDrawing) -> BreastMap | None:
+    """Return the breast that shapes a panel, that of its side or the left one; None away from breasts."""
+    side = next((each for each in SIDES if panel.name.endswith(f" {each}")), SIDES[0])
+    if not drawing.places.landmarks.points.keys() >= {f"bust_point_{side}"}:
+        return None
+    breast = drawing.places.breasts[side]
+    nearest = float(np.linalg.norm(places - breast.apex, axis=1).min())
+    return breast if nearest < 0.5 * float(breast.root.mean()) else None
+
+
+def _start_word(dart: Dart) -> str:
+    return f"root {_clock(dart):.0f} > {_plan_name(dart.seam)}"
+
+
+def _with_dart(block: Block, plan: PanelPlan, dart: Dart, breast: BreastMap) -> _Change:
+    """Return a block with one more slit on each side."""
+    name = _new_name(f"{plan.name} dart", [seam.name for seam in block.seams])
+    end = breast.word(dart.end)
+    seam = Seam(name, WAY, each=True, places=(_start_word(dart), end), slit=True)
+    message = Message(
+        "A dart from the {seam} at {clock}\N{DEGREE SIGN}: {left} % of {limit} %.",
+        seam=SeamName(_plan_name(dart.seam)),
+        clock=f"{_clock(dart):.0f}",
+    )
+    return _Change(DART, message, replace(block, seams=(*block.seams, seam)), (plan.name,))
+
+
+def _with_seam(
+    pattern: Pattern, plan: PanelPlan, panel: Panel, dart: Dart, chart: DartChart, breast: BreastMap
+) -> Iterator[_Change]:
+    """Yield the block in which the place of a dart is a seam right through a panel, over the bust point."""
+    block, places = pattern.garment.block, pattern.places[pattern.garment.panels.index(panel)]
+    if not plan.each:
+        return
+    away = {side.name: _distance(places[side.points], breast.apex) for side in panel.sides}
+    nearest = min(away, key=lambda name: away[name])
+    if away[nearest] < CLEAR:
+        stops = [_start_word(dart), f"apex > {_plan_name(nearest)}"]
+    else:
+        other = min(chart.darts, key=lambda each: abs((_clock(each) - _clock(dart)) % 360.0 - 180.0))
+        stops = [_start_word(dart), "apex", _start_word(other)]
+    turn = (breast.clock(places) - _clock(dart)) % 360.0
+    parts = [_middle(places, turn < 180.0), _middle(places, turn > 180.0)]
+    across = min(abs(_clock(dart) - at) for at in (90.0, 270.0)) < 45.0
+    parts.sort(key=lambda at: -at[2] if across else abs(at[0]))
+    words = ("upper", "lower") if across else ("inner", "outer")
+    names = tuple(_new_name(f"{word} {plan.name}", [p.name for p in block.panels]) for word in words)
+    plans = [
+        replace(plan, name=name, seed=breast.word(part)) for name, part in zip(names, parts, strict=True)
+    ]
+    at = block.panels.index(plan)
+    name = _new_name(f"{plan.name} seam", [seam.name for seam in block.seams])
+    seams = (*block.seams, Seam(name, WAY, each=True, places=tuple(stops)))
+    changed = replace(block, seams=seams, panels=(*block.panels[:at], *plans, *block.panels[at + 1 :]))
+    message = Message(
+        "A seam through the {piece} from the {seam} at {clock}\N{DEGREE SIGN}: {left} % of {limit} %.",
+        piece=PieceName(plan.name),
+        seam=SeamName(_plan_name(dart.seam)),
+        clock=f"{_clock(dart):.0f}",
+    )
+    yield _Change(SEAM, message, changed, names)
+
+
+def _distance(curve: Points, place: Points) -> float:
+    return float(np.linalg.norm(curve - place, axis=1).min())
+
+
+def _middle(places: Points, chosen: Flags) -> Points:
+    """Return the place nearest to the mean of those that are ``chosen`` (p,), (3,) [mm]."""
+    own = places[chosen]
+    return np.asarray(own[int(np.linalg.norm(own - own.mean(axis=0), axis=1).argmin())])
+
+
+def _new_name(name: str, known: Sequence[str]) -> str:
+    """Return the name, with a number where there is one like it."""
+    numbered = [name, *(f"{name} {number}" for number in range(2, len(known) + 3))]
+    return next(each for each in numbered if each not in known)
