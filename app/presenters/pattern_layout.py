@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -37,6 +38,14 @@ class PieceShape:
     def size(self) -> Floats:
         """Return width and height, (2,) [mm]."""
         return np.asarray(np.ptp(self.points, axis=0))
+
+    @cached_property
+    def label_place(self) -> Floats:
+        """Return a place for its title, (2,) [mm]: far from its outline, near its middle."""
+        outline = np.concatenate([points[:-1] for _, points, _ in self.sides])
+        away = np.linalg.norm(self.points[:, None] - self.points[outline][None, ::3], axis=2).min(axis=1)
+        off = np.linalg.norm(self.points - self.points.mean(axis=0), axis=1)
+        return np.asarray(self.points[int((away - 0.3 * off).argmax())])
 
 
 def piece_shapes(pattern: Pattern) -> tuple[PieceShape, ...]:

@@ -68,12 +68,12 @@ def _picture(pattern: Pattern, titles: dict[str, str]) -> Block:
 
     def paint(paper: PagePainter, x: float, y: float) -> None:
         corner = np.array([x + 0.5 * (WIDE - scale * (high[0] - low[0])), y + 2.0])
-        for shape, outline in zip(shapes, outlines, strict=True):
+        for shape, move, outline in zip(shapes, moves, outlines, strict=True):
             places = _on_page(outline, low, high, scale) + corner
             ink = LIGHT.text if shape.fits else LIGHT.warn_mark
             paper.curve(np.concatenate([places, places[:1]]).tolist(), ink, 0.3)
-            middle = 0.5 * (places.min(axis=0) + places.max(axis=0))
-            room = float(np.ptp(places[:, 0])) + 4.0
+            middle = _on_page((shape.label_place + move)[None], low, high, scale)[0] + corner
+            room = 0.9 * float(np.ptp(places[:, 0]))
             words = elide(titles[shape.name], "caption", room)
             paper.text(float(middle[0]), float(middle[1]) + 1.0, words, "caption", align="middle")
 
@@ -99,9 +99,11 @@ def _piece(row: PieceRow) -> Block:
 
 
 def _reasons(rows: Sequence[PieceRow]) -> Iterator[Block]:
+    """Yield what the table does not show: why a piece cannot be sewn beside its strain, and where it bags."""
     for row in rows:
-        if row.reason or row.note:
-            yield bullet(f"{row.title}: {row.reason or row.note}")
+        strained = row.strain_percent > row.limit_percent
+        if words := " ".join(filter(None, ("" if strained else row.reason, row.note))):
+            yield bullet(f"{row.title}: {words}")
 
 
 def _joined(rows: Sequence[SeamRow]) -> list[SeamRow]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.document.block import WAY, Block, PanelPlan, Seam
-from core.errors import UserError
+from core.errors import PatternError, UserError
 from core.geometry.mesh import Flags, Points
 from core.landmarks.types import SIDES
 from core.messages import ClothName, Message, PieceName, SeamName
@@ -222,3 +222,30 @@ def _new_name(name: str, known: Sequence[str]) -> str:
     """Return the name, with a number where there is one like it."""
     numbered = [name, *(f"{name} {number}" for number in range(2, len(known) + 3))]
     return next(each for each in numbered if each not in known)
+
+
+def with_dart(pattern: Pattern, piece: str, dart: Dart, drawing: SeamDrawing) -> Block:
+    """Return the block of a pattern with a dart of the chart of a piece, on both sides.
+
+    Raises PatternError for a piece that no breast shapes.
+    """
+    number = [panel.name for panel in pattern.garment.panels].index(piece)
+    panel, block = pattern.garment.panels[number], pattern.garment.block
+    breast = _breast_of(panel, pattern.places[number], drawing)
+    if breast is None or dart.clock is None:
+        raise PatternError(
+            Message("A dart can be added near a breast only."), Message("Draw it into the block instead.")
+        )
+    plan = next(each for each in block.panels if each.name == _plan_name(piece))
+    return _with_dart(block, plan, dart, breast).block
+
+
+def chart_of(pattern: Pattern, piece: str, drawing: SeamDrawing, progress: Progress = quiet) -> DartChart:
+    """Return what darts do for a piece of a pattern, by the clock where a breast shapes it.
+
+    Raises Cancelled.
+    """
+    number = [panel.name for panel in pattern.garment.panels].index(piece)
+    panel, places = pattern.garment.panels[number], pattern.places[number]
+    breast = _breast_of(panel, places, drawing)
+    return dart_chart(panel, places, pattern.cloths[panel.cloth], breast=breast, progress=progress)

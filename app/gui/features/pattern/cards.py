@@ -8,6 +8,7 @@ from typing import Any
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
 
+from app.gui.features.pattern.dart_view import DartChartView
 from app.gui.theme.stylesheet import label, set_tag
 from app.gui.widgets.basic import button, sentence
 from app.gui.widgets.menu import Menu, pull_down
@@ -19,6 +20,7 @@ from app.presenters.model_options import Amount
 from app.presenters.pattern import PieceRow, SeamRow
 from core.document.block import LARGEST_ALLOWANCE
 from core.document.cloth import Cloth
+from core.pattern.dart_chart import DartChart
 
 STEPS = 200
 """Places of the knob along a seam."""
@@ -57,6 +59,8 @@ class PieceCard(_Card):
 
     ``way_chosen`` carries the number of a way out; ``ways_requested`` asks for them, ``chart_requested`` for
     the chart of darts.
+
+    ``dart_chosen`` and ``dart_requested`` carry a Dart of it: one to show, one to add.
     """
 
     cloth_chosen = Signal(str)
@@ -66,6 +70,8 @@ class PieceCard(_Card):
     ways_requested = Signal()
     way_chosen = Signal(int)
     chart_requested = Signal()
+    dart_chosen = Signal(object)
+    dart_requested = Signal(object)
 
     def __init__(self) -> None:
         super().__init__()
@@ -86,6 +92,7 @@ class PieceCard(_Card):
         self._ways = QVBoxLayout()
         self._ways.setSpacing(4)
         self.column.addLayout(self._ways)
+        self.column.addWidget(self._make_chart())
         self.column.addLayout(self._make_buttons())
 
     def _make_buttons(self) -> QHBoxLayout:
@@ -101,6 +108,30 @@ class PieceCard(_Card):
         row.addWidget(self.chart)
         row.addStretch(1)
         return row
+
+    def _make_chart(self) -> QWidget:
+        holder = self._charted = QWidget()
+        column, row = QVBoxLayout(holder), QHBoxLayout()
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(4)
+        self.darts, self.dart_words = DartChartView(), sentence("", "secondary")
+        self.darts.chosen.connect(self.dart_chosen)
+        self.darts.chosen.connect(lambda _: self.dart_words.setText(self.darts.words()))
+        add = button(tr("Add dart"))
+        add.clicked.connect(lambda: self.dart_requested.emit(self.darts.dart))
+        row.addWidget(self.dart_words, 1)
+        row.addWidget(add)
+        column.addWidget(self.darts)
+        column.addLayout(row)
+        holder.hide()
+        return holder
+
+    def show_chart(self, chart: DartChart | None, limit: float) -> None:
+        """Show what darts leave, beside the limit of the cloth [1]; None hides the chart."""
+        self._charted.setVisible(chart is not None)
+        if chart is not None:
+            self.darts.show_chart(chart, limit)
+            self.dart_words.setText(self.darts.words())
 
     def show_piece(self, row: PieceRow | None, cloths: Sequence[Cloth], cloth: str, turn: float) -> None:
         """Show a piece, made of the cloth of this name; None hides the card."""

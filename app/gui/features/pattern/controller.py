@@ -13,6 +13,7 @@ from app.gui.features.pattern.garment_layer import GarmentLayer, GarmentSeams, v
 from app.gui.features.pattern.panel import PatternPanel
 from app.gui.features.pattern.pieces_view import PiecesView, strain_ramp
 from app.gui.features.pattern.seam_editing import SeamEditing
+from app.gui.features.pattern.ways_out import WaysOut
 from app.gui.features.pattern.worker import PatternRequest, PatternResult, PatternWorker
 from app.gui.theme.stylesheet import tokens_of
 from app.i18n.catalog import number, tr
@@ -35,12 +36,14 @@ STEP = "pattern"
 
 
 class PatternController(QObject):
-    """Show the pieces of the session's frame while the step is open; ``changed`` when there are others.
+    """Show the pieces of the session's frame while the step is open; ``changed`` when there are others,
+    ``selected`` when another piece or seam is.
 
     ``result`` is what is shown, of the present frame or a former one.
     """
 
     changed = Signal()
+    selected = Signal()
     carrying_changed = Signal()
 
     def __init__(self, context: AppContext, panel: PatternPanel, view: PiecesView) -> None:
@@ -55,7 +58,7 @@ class PatternController(QObject):
         self.is_open = False
         self._framed = ""  # the block that the camera was moved to
         self.editing = SeamEditing(context, self)
-        self.files = PatternExport(context, self)
+        self.files, self.ways = PatternExport(context, self), WaysOut(context, self)
         panel.set_blocks([(each.name, block_title(each), block_about(each)) for each in built_in_blocks()])
         self._connect()
 
@@ -288,6 +291,7 @@ class PatternController(QObject):
         """Select a piece and no seam, or nothing."""
         self.piece, self.seam = name, ""
         self._show_selection()
+        self.selected.emit()
 
     def select_seam(self, name: str) -> None:
         """Select a seam by the name of its curve, or nothing."""
@@ -295,6 +299,7 @@ class PatternController(QObject):
         self.piece = "" if name else self.piece
         self.panel.seam_card.knob.setValue(0)
         self._show_selection()
+        self.selected.emit()
 
     def _show_selection(self) -> None:
         result, plan = self.result, self.plan

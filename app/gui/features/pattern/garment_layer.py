@@ -87,6 +87,7 @@ class GarmentLayer(QObject):
         self.seam = self._hovered = ""
         self._handles: Points = np.empty((0, 3))
         self._knob: Points = np.empty((0, 3))
+        self._marks: tuple[Points, ...] = ()
         self._held: int | None = None
 
     @property
@@ -129,6 +130,11 @@ class GarmentLayer(QObject):
             self._hovered = seam
             self._draw()
 
+    def mark(self, curves: Sequence[Points]) -> None:
+        """Draw curves on the cloth beside the seams, each (k, 3) [mm]: a dart that is tried."""
+        self._marks = tuple(curves)
+        self._draw()
+
     def walk(self, knob: Points) -> None:
         """Show where a seam is walked, (0 or more, 3) [mm]."""
         self._knob = knob
@@ -151,6 +157,7 @@ class GarmentLayer(QObject):
             self._actor.set_dark(scene.dark)
         handles = scene.carried_points(self._handles) if len(self._handles) else self._handles
         marked = [curve for name in {self.seam, self._hovered} for curve in self.seams.curves.get(name, ())]
+        marked += self._marks
         plain = [curve for curves in self.seams.curves.values() for curve in curves]
         drawn = GarmentDrawing(
             self.seams.points, self.seams.faces, self._colours, plain, marked, handles, self._knob

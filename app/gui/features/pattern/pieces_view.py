@@ -342,7 +342,7 @@ class PiecesView(QWidget):
 
     def _paint_titles(self, painter: QPainter) -> None:
         for shape, move in zip(self._shapes, self._moves, strict=True):
-            x, y = self._spots((_inside(shape) + move)[None])[0]
+            x, y = self._spots((shape.label_place + move)[None])[0]
             self._paint_title(painter, QPointF(x, y), shape)
 
     def _paint_title(self, painter: QPainter, middle: QPointF, shape: PieceShape) -> None:
@@ -370,14 +370,6 @@ class PiecesView(QWidget):
             painter.setPen(QColor(tokens.warn if value and not shape.fits else tokens.text))
             where = QRectF(ground.left(), ground.top() + 1.0 + 15.0 * at, wide, 16.0)
             painter.drawText(where, Qt.AlignmentFlag.AlignCenter, shown)
-
-
-def _inside(shape: PieceShape) -> Floats:
-    """Return a place well inside a piece for its title, (2,) [mm]: far from its outline, near its middle."""
-    outline = np.concatenate([points[:-1] for _, points, _ in shape.sides])
-    away = np.linalg.norm(shape.points[:, None] - shape.points[outline][None, ::3], axis=2).min(axis=1)
-    off = np.linalg.norm(shape.points - shape.points.mean(axis=0), axis=1)
-    return np.asarray(shape.points[int((away - 0.3 * off).argmax())])
 
 
 def _walked(points: Floats, share: float, forward: bool) -> Floats:

@@ -11,7 +11,6 @@ from PySide6.QtCore import QObject, Signal
 
 from app.gui.session.jobs import Job, Jobs
 from app.i18n.catalog import tr
-from core.document.block import Block
 from core.document.garment_pattern import GarmentPattern
 from core.pattern.cloth_library import cloths_of
 from core.pattern.garment import CutGarment, Pattern, cut_garment, worn_skin
@@ -98,7 +97,7 @@ class PatternWorker(QObject):
         """Make a pattern, in a thread of its own."""
         with self._turn:
             drawing = self._drawing_of(request.frame)
-            garment = self._garment_of(drawing, request.plan.block)
+            garment = self._garment_of(drawing, request.plan)
             cloths = cloths_of(request.plan)
             former = None if request.final else self._matched
             pattern = garment.flat(worn_skin(request.frame.stages, request.frame.vertices), cloths, former)
@@ -116,9 +115,9 @@ class PatternWorker(QObject):
             self._garment = self._matched = None
         return self._drawing
 
-    def _garment_of(self, drawing: SeamDrawing, block: Block) -> CutGarment:
+    def _garment_of(self, drawing: SeamDrawing, plan: GarmentPattern) -> CutGarment:
         known = self._garment
-        if known is None or known.block != block:
-            self._garment, self._matched = cut_garment(drawing, block), None
+        if known is None or known.block != plan.block or known.is_bridged != plan.bridged:
+            self._garment, self._matched = cut_garment(drawing, plan.block, plan.bridged), None
         assert self._garment is not None
         return self._garment
