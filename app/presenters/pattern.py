@@ -84,7 +84,7 @@ def seam_rows(pattern: Pattern) -> tuple[SeamRow, ...]:
                 pattern.seam_length(fit),
                 fit.together,
                 fit.alone,
-                _said(pattern.seam_problem(fit) or pattern.seam_note(fit)),
+                _said(pattern.seam_problem(fit.seam) or pattern.seam_note(fit)),
             )
         )
     return tuple(rows)

@@ -55,7 +55,7 @@ def seam_values(pattern: Pattern) -> list[dict[str, Any]]:
             "ratio": fit.seam.ratio,
             "alone_mm": list(fit.alone),
             "misfit_alone_percent": 100.0 * fit.misfit,
-            "note": _said(pattern.seam_problem(fit) or pattern.seam_note(fit)),
+            "note": _said(pattern.seam_problem(fit.seam) or pattern.seam_note(fit)),
         }
         for fit in pattern.matched.fits
     ]

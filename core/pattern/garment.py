@@ -22,6 +22,7 @@ from core.pattern.piece import NO_ELASTICS, EdgeElastic, Piece, Side, SideKey, m
 from core.pattern.places import BodyPlaces
 from core.pattern.seam_curves import SeamCurve, SeamDrawing
 from core.pattern.seam_matching import Matched, SeamFit, match, seams_of
+from core.pattern.seam_matching import Seam as SewnSeam
 from core.pattern.surface_cut import cut_surface
 from core.pattern.surface_trace import SurfaceCurve
 from core.pipeline.build import Stages
@@ -141,16 +142,20 @@ class Pattern:
                 cloth=ClothName(cloth.title),
                 limit=f"{100.0 * cloth.limit:g}",
             )
-        return next(filter(None, map(self.seam_problem, self._seams_of(flat))), None)
+        sewn = [seam for seam in self.matched.seams if self.flats.index(flat) in seam.panels]
+        return next(filter(None, map(self.seam_problem, sewn)), None)
 
-    def seam_problem(self, fit: SeamFit) -> Message | None:
+    def seam_problem(self, seam: SewnSeam) -> Message | None:
         """Return why a seam cannot be sewn: its sides still differ when all pieces are matched. Else None."""
-        apart = abs(fit.together[0] - fit.seam.ratio * fit.together[1])
+        first, second = (
+            self.flats[panel].side_length(side) for panel, side in zip(seam.panels, seam.sides, strict=True)
+        )
+        apart = abs(first - seam.ratio * second)
         if apart <= SEWN:
             return None
         return Message(
             "The sides of the {seam} differ by {difference}.",
-            seam=SeamName(fit.seam.name),
+            seam=SeamName(seam.name),
             difference=Length(apart, 2),
         )
 
@@ -185,10 +190,6 @@ class Pattern:
     def fits_cloths(self) -> bool:
         """Return whether all pieces and seams can be cut and sewn as they are."""
         return all(map(self.fits, self.flats))
-
-    def _seams_of(self, flat: FlatPanel) -> Sequence[SeamFit]:
-        names = [each.panel.name for each in self.flats]
-        return [fit for fit in self.matched.fits if names.index(flat.panel.name) in fit.seam.panels]
 
     def seam_length(self, fit: SeamFit) -> float:
         """Return the length of a seam on the body [mm]."""
