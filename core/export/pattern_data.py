@@ -34,6 +34,7 @@ def piece_values(pattern: Pattern) -> list[dict[str, Any]]:
                 "cloth": cloth.name,
                 "area_mm2": float(flat.areas.sum()),
                 "strain_p95_percent": 100.0 * pattern.strains[name].within,
+                "stretch_worn_percent": [100.0 * each for each in pattern.worn_stretch(flat)],
                 "limit_percent": 100.0 * cloth.limit,
                 "fits": pattern.fits(flat),
                 "reason": _said(pattern.problem(flat)),

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from core.document.block import Block, Seam
-from core.document.cloth import Cloth
+from core.document.cloth import Cloth, Pair
 from core.document.garment_pattern import ALLOWANCE, GarmentPattern
 from core.geometry.mesh import Points
 from core.landmarks.types import SIDES
@@ -171,10 +171,15 @@ class Pattern:
             other=PieceName(self.flats[other].panel.name),
         )
 
+    def worn_stretch(self, flat: FlatPanel) -> Pair:
+        """Return how far a piece is stretched when worn, with its ease, in the mean across and down [1]."""
+        across, down = flat.areas @ flat.totals / flat.areas.sum()
+        return float(across), float(down)
+
     def note(self, flat: FlatPanel) -> Message | None:
-        """Return where a piece bags because its cloth is not stretched when worn, None if it does not."""
-        loose = flat.areas / flat.areas.sum() @ (flat.totals < LOOSE)  # across and down
-        if loose.max() <= LOOSE_AREA:
+        """Return where a piece that fits bags when worn, as its cloth is not stretched, else None."""
+        loose = flat.areas @ (flat.totals < LOOSE) / flat.areas.sum()  # across and down
+        if loose.max() <= LOOSE_AREA or not self.fits(flat):
             return None
         texts = (
             Message("Bags across on {share} % of the area: choose a cloth with more ease."),

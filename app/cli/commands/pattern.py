@@ -14,7 +14,7 @@ from app.cli.design import design_of
 from app.cli.options import add_lines, add_scan
 from app.cli.output import DONE, finish, table_lines
 from app.cli.solved_design import SolvedDesign, solve_design
-from app.presenters.messages import line_title
+from app.presenters.messages import elastic_title, line_title
 from app.presenters.pattern import piece_rows, seam_rows
 from app.rendering.band import band_width
 from core import __version__
@@ -157,6 +157,7 @@ def _cut(plan: GarmentPattern, solved: SolvedDesign, *, strips: bool) -> _Cut:
     elastics = edge_elastics(pattern, cuts)
     names = [row.line for row in cuts.rows]
     titles = {name: line_title(name, design) for name in names}
+    titles |= {row.elastic: elastic_title(row.elastic) for row in cuts.rows}
     widths = {name: band_width(name, design) for name in names}
     on_edges = lines_on_edges(pattern, cuts)
     straps = strip_pieces(shown, cuts, on_edges, titles, widths) if strips else ()
