@@ -17,7 +17,8 @@ class PieceRow:
 
     ``strain_percent`` is that of the worn piece before ease on 95 % of its area, at most ``limit_percent``
     where its cloth takes it up. ``reason`` says why it cannot be sewn as it is, empty if it ``fits``;
-    ``note`` what to look at.
+    ``note`` what to look at. ``stretch_percent`` is its mean stretch when worn, with its ease, across and
+    down.
     """
 
     name: str
@@ -29,6 +30,7 @@ class PieceRow:
     fits: bool
     reason: str
     note: str
+    stretch_percent: tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -53,6 +55,7 @@ def piece_rows(pattern: Pattern) -> tuple[PieceRow, ...]:
     rows = []
     for flat in pattern.flats:
         name, cloth, problem = flat.panel.name, pattern.cloths[flat.panel.cloth], pattern.problem(flat)
+        across, down = pattern.worn_stretch(flat)
         rows.append(
             PieceRow(
                 name,
@@ -64,6 +67,7 @@ def piece_rows(pattern: Pattern) -> tuple[PieceRow, ...]:
                 problem is None,
                 _said(problem),
                 _said(pattern.note(flat)),
+                (100.0 * across, 100.0 * down),
             )
         )
     return tuple(rows)
@@ -84,7 +88,7 @@ def seam_rows(pattern: Pattern) -> tuple[SeamRow, ...]:
                 pattern.seam_length(fit),
                 fit.together,
                 fit.alone,
-                _said(pattern.seam_problem(fit) or pattern.seam_note(fit)),
+                _said(pattern.seam_problem(fit.seam) or pattern.seam_note(fit)),
             )
         )
     return tuple(rows)

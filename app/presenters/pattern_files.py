@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from app.i18n.catalog import tr
-from app.presenters.messages import line_title
+from app.presenters.messages import elastic_title, line_title
 from app.rendering.band import band_width
 from core import __version__
 from core.document.garment_pattern import GarmentPattern
@@ -80,6 +80,7 @@ def cut_pattern(pattern: Pattern, plan: GarmentPattern, shown: ShownState, *, st
     elastics = edge_elastics(pattern, cuts)
     names = [row.line for row in cuts.rows]
     titles = {name: line_title(name, design) for name in names}
+    titles |= {row.elastic: elastic_title(row.elastic) for row in cuts.rows}
     widths = {name: band_width(name, design) for name in names}
     on_edges = lines_on_edges(pattern, cuts)
     straps = strip_pieces(shown, cuts, on_edges, titles, widths) if strips else ()

@@ -34,6 +34,7 @@ def piece_values(pattern: Pattern) -> list[dict[str, Any]]:
                 "cloth": cloth.name,
                 "area_mm2": float(flat.areas.sum()),
                 "strain_p95_percent": 100.0 * pattern.strains[name].within,
+                "stretch_worn_percent": [100.0 * each for each in pattern.worn_stretch(flat)],
                 "limit_percent": 100.0 * cloth.limit,
                 "fits": pattern.fits(flat),
                 "reason": _said(pattern.problem(flat)),
@@ -55,7 +56,7 @@ def seam_values(pattern: Pattern) -> list[dict[str, Any]]:
             "ratio": fit.seam.ratio,
             "alone_mm": list(fit.alone),
             "misfit_alone_percent": 100.0 * fit.misfit,
-            "note": _said(pattern.seam_problem(fit) or pattern.seam_note(fit)),
+            "note": _said(pattern.seam_problem(fit.seam) or pattern.seam_note(fit)),
         }
         for fit in pattern.matched.fits
     ]

@@ -25,8 +25,8 @@ def strip_pieces(
 ) -> tuple[Piece, ...]:
     """Return a strip for each row of a cut list that can be cut and is not the elastic of an edge.
 
-    ``on_edges`` names the lines of those, ``titles`` and ``widths`` [mm] are by line. Raises LineError for
-    control points that are not a valid shape.
+    ``on_edges`` names the lines of those, ``titles`` are by line and by elastic, ``widths`` [mm] by line.
+    Raises LineError for control points that are not a valid shape.
     """
     rows = {row.line: row for row in cuts.rows}
     pieces = []
@@ -34,10 +34,9 @@ def strip_pieces(
         row = rows.get(strip.name)
         if row is None or row.line in on_edges or row.cut_mm is None or row.front_only:
             continue
-        if row.parts:  # a band over both regions: the marks of its parts do not belong to the whole
-            pieces.append(piece_of_strip(replace(strip, length=row.cut_mm, marks=()), row.elastic))
-        else:
-            pieces.append(piece_of_strip(strip, row.elastic))
+        # Of a band over both regions the marks are those of its parts, which do not belong to the whole.
+        whole = replace(strip, length=row.cut_mm, marks=()) if row.parts else strip
+        pieces.append(piece_of_strip(whole, titles.get(row.elastic, row.elastic)))
     return tuple(pieces)
 
 

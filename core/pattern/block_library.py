@@ -11,7 +11,7 @@ from typing import Any
 
 from core.document.block import Block
 from core.document.json_values import parsed, value_of
-from core.errors import PatternError, UserError
+from core.errors import PatternError, UserError, reason_of
 from core.files.atomic_write import write_text
 from core.files.regular_file import read_text
 from core.messages import Message
@@ -73,11 +73,16 @@ def _plain(value: Any) -> Any:
 
 
 def read_block(path: Path) -> Block:
-    """Read a block, named after its file. Raises PatternError where it cannot be used, OSError."""
+    """Read a block, named after its file. Raises PatternError where it cannot be read or used."""
     try:
         return block_of(path.stem, read_text(path, LARGEST_BLOCK))
     except UnicodeDecodeError as error:
         raise _refusal(path.stem, "not text") from error
+    except OSError as problem:
+        raise PatternError(
+            Message("The block {name} cannot be read: {why}.", name=path.name, why=reason_of(problem)),
+            Message("Check the name and folder of the file."),
+        ) from problem
 
 
 def write_block(path: Path, block: Block) -> None:

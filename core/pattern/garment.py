@@ -9,7 +9,7 @@ from functools import cached_property, partial
 import numpy as np
 
 from core.document.block import RING, ROOT, Block, Seam
-from core.document.cloth import Cloth
+from core.document.cloth import Cloth, Pair
 from core.document.garment_pattern import ALLOWANCE, GarmentPattern
 from core.geometry.mesh import Points
 from core.landmarks.types import SIDES
@@ -23,6 +23,7 @@ from core.pattern.piece import NO_ELASTICS, EdgeElastic, Piece, Side, SideKey, m
 from core.pattern.places import BodyPlaces
 from core.pattern.seam_curves import SeamCurve, SeamDrawing
 from core.pattern.seam_matching import Matched, SeamFit, match, seams_of
+from core.pattern.seam_matching import Seam as SewnSeam
 from core.pattern.surface_cut import cut_surface
 from core.pattern.surface_trace import SurfaceCurve
 from core.pipeline.build import Stages
@@ -152,16 +153,20 @@ class Pattern:
                 cloth=ClothName(cloth.title),
                 limit=f"{100.0 * cloth.limit:g}",
             )
-        return next(filter(None, map(self.seam_problem, self._seams_of(flat))), None)
+        sewn = [seam for seam in self.matched.seams if self.flats.index(flat) in seam.panels]
+        return next(filter(None, map(self.seam_problem, sewn)), None)
 
-    def seam_problem(self, fit: SeamFit) -> Message | None:
+    def seam_problem(self, seam: SewnSeam) -> Message | None:
         """Return why a seam cannot be sewn: its sides still differ when all pieces are matched. Else None."""
-        apart = abs(fit.together[0] - fit.seam.ratio * fit.together[1])
+        first, second = (
+            self.flats[panel].side_length(side) for panel, side in zip(seam.panels, seam.sides, strict=True)
+        )
+        apart = abs(first - seam.ratio * second)
         if apart <= SEWN:
             return None
         return Message(
             "The sides of the {seam} differ by {difference}.",
-            seam=SeamName(fit.seam.name),
+            seam=SeamName(seam.name),
             difference=Length(apart, 2),
         )
 
@@ -177,10 +182,15 @@ class Pattern:
             other=PieceName(self.flats[other].panel.name),
         )
 
+    def worn_stretch(self, flat: FlatPanel) -> Pair:
+        """Return how far a piece is stretched when worn, with its ease, in the mean across and down [1]."""
+        across, down = flat.areas @ flat.totals / flat.areas.sum()
+        return float(across), float(down)
+
     def note(self, flat: FlatPanel) -> Message | None:
-        """Return where a piece bags because its cloth is not stretched when worn, None if it does not."""
-        loose = flat.areas / flat.areas.sum() @ (flat.totals < LOOSE)  # across and down
-        if loose.max() <= LOOSE_AREA:
+        """Return where a piece that fits bags when worn, as its cloth is not stretched, else None."""
+        loose = flat.areas @ (flat.totals < LOOSE) / flat.areas.sum()  # across and down
+        if loose.max() <= LOOSE_AREA or not self.fits(flat):
             return None
         texts = (
             Message("Bags across on {share} % of the area: choose a cloth with more ease."),
@@ -196,10 +206,6 @@ class Pattern:
     def fits_cloths(self) -> bool:
         """Return whether all pieces and seams can be cut and sewn as they are."""
         return all(map(self.fits, self.flats))
-
-    def _seams_of(self, flat: FlatPanel) -> Sequence[SeamFit]:
-        names = [each.panel.name for each in self.flats]
-        return [fit for fit in self.matched.fits if names.index(flat.panel.name) in fit.seam.panels]
 
     def seam_length(self, fit: SeamFit) -> float:
         """Return the length of a seam on the body [mm]."""

@@ -88,7 +88,7 @@ def test_what_cannot_be_cut_is_refused_with_the_reason(
         (["pattern", *PERSON, *cup, "--cloth", "wing"], "'wing' is not a piece and its cloth"),
         (["pattern", *PERSON, *cup, "--cloth", "hat=power net"], "There is no piece 'hat'"),
         (["pattern", *PERSON, *cup, "--cloth", "wing=tin"], "No cloth matches 'tin'"),
-        (["pattern", *PERSON, *cup, "--cloth", f"wing={tmp_path / 'mine.csv'}"], "mine"),
+        (["pattern", *PERSON, *cup, "--cloth", f"wing={tmp_path / 'mine.csv'}"], "not specify the stretch"),
     ):
         assert main(words) == 2
         assert why in capsys.readouterr().err
