@@ -176,9 +176,8 @@ class _Trials:
         corners = self.panel.faces[face]
         aim = (barycentric(self.places[corners], foot)[:, None] @ self.chart.vertices[corners, :2])[0, 0]
         near = float(np.linalg.norm(self.ring - aim, axis=1).min())
-        slits = {
-            side.name for side in self.panel.sides if side.partner and side.partner[0] == self.panel.name
-        }
+        name = self.panel.name
+        slits = {side.name for side in self.panel.sides if side.partner and side.partner[0] == name}
         for at in range(0, len(self.ring), _EVERY):
             if self.sides[at][0] in slits:
                 continue

@@ -43,6 +43,7 @@ _ROOT = re.compile(rf"root {_NUMBER}(?:\*{_NUMBER})?{_OFF}")
 _RING = re.compile(rf"ring ([\w ]+?) {_NUMBER}{_OFF}")
 _CENTRE = re.compile(rf"(front|back) ([a-z][a-z ]*?){_OFF}")
 _CELL = re.compile(rf"(below )?r{_NUMBER}c{_NUMBER}")
+_EDGE = 20.0  # above the edge of a scan its levels are whole [mm]
 _BEARING = np.radians(2.0)  # between places of a ring [rad]
 
 
@@ -79,7 +80,7 @@ class BodyPlaces:
         known = {
             "under": self.landmarks.underbust_level,
             "bust": self.landmarks.bust_level,
-            "low": float(self.skin.vertices[:, 2].min()),
+            "low": self._low,
         }
         if reference in known:
             return known[reference]
@@ -89,6 +90,14 @@ class BodyPlaces:
                 Message("Choose a block for the bust, or a scan that extends to mid-thigh."),
             )
         return float(self.lower.points[reference].position[2])
+
+    @cached_property
+    def _low(self) -> float:
+        """Return the height of the scan's edge, or where its trunk ends above the legs [mm]."""
+        low = float(self.skin.vertices[:, 2].min())
+        heights = np.arange(low + _EDGE, self.landmarks.underbust_level, _EDGE)
+        ends = (z for z in heights if len(trunk_levels(self.skin, [z])[0].segments))
+        return next(ends, low + _EDGE) - _EDGE
 
     def ring(self, z: float, side: str) -> Points:
         """Return the half round at a height from front to back centre on one side, (k, 3) [mm].
