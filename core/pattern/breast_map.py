@@ -14,9 +14,10 @@ import numpy as np
 from core.errors import PatternError
 from core.geometry.closest_point import nearest_faces
 from core.geometry.mesh import Flags, Floats, Mesh, Points, submesh, unit
-from core.geometry.plane_sections import arc_length, cut, interpolate, join_segments
+from core.geometry.plane_sections import arc_length, interpolate
 from core.landmarks.types import Landmarks
 from core.messages import Message, SideName
+from core.pattern.plane_walk import walk_planes
 
 RAYS = 72
 """Ways from the bust point whose places are known; between two of them is interpolated."""
@@ -64,7 +65,7 @@ class BreastMap:
             (1.0 - part) * self.rays[ray, low] + part * self.rays[ray, low + 1]
             for ray in (first, (first + 1) % RAYS)
         )
-        return nearest_faces(self.skin, (1.0 - share) * one + share * other)[1]
+        return nearest_faces(self.skin, (1.0 - share) * one + share * other, self.skin.centroid_tree)[1]
 
 
 def breast_map(skin: Mesh, landmarks: Landmarks, side: str) -> BreastMap:
@@ -74,25 +75,20 @@ def breast_map(skin: Mesh, landmarks: Landmarks, side: str) -> BreastMap:
     outer, inner = marks["outer"], marks["inner"]
     marks["fold"] = landmarks.position(f"fold_{side}")
     near = submesh(skin, _round(skin, apex))
-    apex = nearest_faces(near, apex[None])[1][0]
+    apex = nearest_faces(near, apex[None], near.centroid_tree)[1][0]
     axis = (apex - 0.5 * (outer + inner)) * [1.0, 1.0, 0.0]
     up, axis = np.array([0.0, 0.0, 1.0]), unit(axis)
     outward = np.cross(axis, up)
     outward *= np.sign(outward @ (outer - inner))
-    rays = np.stack([np.zeros((int(REACH / STEP) + 1, 3))] * RAYS)
-    known = 0
-    for number in range(RAYS // 2):
-        turn = np.radians(number * 360.0 / RAYS)
-        way = np.cos(turn) * up + np.sin(turn) * outward
-        for ray, sign in ((number, 1.0), (number + RAYS // 2, -1.0)):
-            walked = _walk(near, apex, axis, sign * way)
-            known += len(walked) > 1
-            rays[ray] = _evenly(walked)
-    if known < RAYS:
+    turn = np.radians(np.arange(RAYS) * 360.0 / RAYS)[:, None]
+    ways = np.cos(turn) * up + np.sin(turn) * outward
+    walked = walk_planes(near, apex, ways, unit(np.cross(axis, ways)), REACH)
+    if min(arc_length(each)[-1] for each in walked) < STEP:
         raise PatternError(
             Message("The skin around the {side} breast is incomplete.", side=SideName(side)),
             Message("Fill the holes at the Scan step."),
         )
+    rays = np.stack([_evenly(each) for each in walked])
     root = _root(rays, apex, (up, outward), marks)
     return BreastMap(near, rays, root)
 
@@ -101,23 +97,6 @@ def _round(skin: Mesh, apex: Points) -> Flags:
     """Return the faces round a bust point, (m,)."""
     near = np.linalg.norm(skin.vertices - apex, axis=1) < REACH + 20.0
     return np.asarray(near[skin.faces].any(axis=1))
-
-
-def _walk(skin: Mesh, apex: Points, axis: Points, way: Points) -> Points:
-    """Return the way along the skin from the bust point in a direction, in its plane with the ``axis``."""
-    curves = join_segments(cut(skin, apex, unit(np.cross(axis, way))))
-    if not curves:
-        return apex[None]
-    curve, closed = min(curves, key=lambda one: float(np.linalg.norm(one[0] - apex, axis=1).min()))
-    at = int(np.linalg.norm(curve - apex, axis=1).argmin())
-    if closed:
-        ways = [np.roll(curve[:-1], -at, axis=0), np.roll(curve[:-1][::-1], at + 1, axis=0)]
-    else:
-        ways = [curve[at:], curve[at::-1]]
-    ends = [way_[np.searchsorted(arc_length(way_), 15.0).clip(max=len(way_) - 1)] for way_ in ways]
-    chosen = ways[int(np.argmax([(end - apex) @ way for end in ends]))]
-    ahead = chosen[1:][(chosen[1:] - apex) @ way > 0.0] if len(chosen) < 4 else chosen[1:]
-    return np.concatenate([apex[None], ahead])
 
 
 def _evenly(walked: Points) -> Points:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -46,16 +46,19 @@ class CutGarment:
 def cut_garment(drawing: SeamDrawing, block: Block) -> CutGarment:
     """Cut a block on a body. Raises PatternError, LineError for a body that it does not fit."""
     curves = drawing.curves(block)
-    cut = cut_surface(
-        drawing.places.skin,
-        tuple(SurfaceCurve(each.name, each.points, each.seam.slit, each.seam.edge) for each in curves),
-    )
-    return CutGarment(block, curves, cut_panels(cut, tuple(_seeds(drawing, block, curves))))
+    cut = cut_surface(drawing.places.skin, surface_curves(curves))
+    return CutGarment(block, curves, cut_panels(cut, panel_seeds(drawing, block, curves)))
 
 
-def _seeds(drawing: SeamDrawing, block: Block, curves: Sequence[SeamCurve]) -> list[PanelSeed]:
+def surface_curves(curves: Iterable[SeamCurve]) -> tuple[SurfaceCurve, ...]:
+    """Return seams as curves that cut the skin."""
+    return tuple(SurfaceCurve(each.name, each.points, each.seam.slit, each.seam.edge) for each in curves)
+
+
+def panel_seeds(drawing: SeamDrawing, block: Block, curves: Sequence[SeamCurve]) -> tuple[PanelSeed, ...]:
+    """Return a place in each panel of a block whose seams are ``curves``. Raises PatternError."""
     levels, drawn = drawing.levels(block), {each.name: each.points for each in curves}
-    return [
+    return tuple(
         PanelSeed(
             f"{plan.name} {side}".rstrip(),
             drawing.places.place(plan.seed, side, levels, drawn),
@@ -64,7 +67,7 @@ def _seeds(drawing: SeamDrawing, block: Block, curves: Sequence[SeamCurve]) -> l
         )
         for plan in block.panels
         for side in (SIDES if plan.each else ("",))
-    ]
+    )
 
 
 @dataclass(frozen=True, eq=False)

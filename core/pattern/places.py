@@ -22,12 +22,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from core.control_mesh.embedding import locate_on_grid
 from core.control_mesh.fit import BUST, LOWER, ControlMesh
 from core.errors import PatternError
-from core.geometry.closest_point import centroid_tree, nearest_faces
+from core.geometry.closest_point import nearest_faces
 from core.geometry.mesh import Floats, Mesh, Points
 from core.geometry.plane_sections import arc_length, interpolate
 from core.landmarks.lower_trunk.types import LowerLandmarks
@@ -178,11 +177,7 @@ class BodyPlaces:
             return None
         corners, weights = locate_on_grid(control.grid, np.array([[row, sign * column]]))
         flat = np.einsum("kc,kcx->kx", weights, control.mesh.vertices[corners])
-        return np.asarray(nearest_faces(self.skin, flat, self._tree)[1][0])
-
-    @cached_property
-    def _tree(self) -> cKDTree:
-        return centroid_tree(self.skin)
+        return np.asarray(nearest_faces(self.skin, flat, self.skin.centroid_tree)[1][0])
 
     def _landmark(self, name: str) -> Points | None:
         every = {**self.landmarks.points, **(self.lower.points if self.lower is not None else {})}
