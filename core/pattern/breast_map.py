@@ -7,6 +7,7 @@ has one distance, which its height does not.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,6 +28,8 @@ REACH = 240.0
 
 STEP = 2.0
 """Distance between the places of a way [mm]."""
+
+_TURNS = 8  # of finding clock position and distance of a place; three are the rule
 
 ABOVE = 1.08
 """The root above the bust point, where no landmark is, in parts of the mean of both sides."""
@@ -66,6 +69,29 @@ class BreastMap:
             for ray in (first, (first + 1) % RAYS)
         )
         return nearest_faces(self.skin, (1.0 - share) * one + share * other, self.skin.centroid_tree)[1]
+
+    def locate(self, place: Points) -> tuple[float, float]:
+        """Return the clock position [degrees] and the distance [mm] of a ``place`` (3,) [mm] of the skin."""
+        count = self.rays.shape[1]
+        away = np.linalg.norm(self.rays - place, axis=2)
+        away[:, 0] = np.where(np.arange(RAYS) == 0, away[:, 0], np.inf)
+        ray, at = divmod(int(away.argmin()), count)
+        found, step = np.array([float(ray), float(at)]), 1e-3
+        for _ in range(_TURNS):
+            here, beside, beyond = (self._between(*found, *off) for off in ((0, 0), (step, 0), (0, step)))
+            slopes = np.stack([beside - here, beyond - here], axis=1) / step
+            move = np.linalg.lstsq(slopes, place - here, rcond=None)[0]
+            found += np.clip(move, -1.0, 1.0)
+            found[1] = np.clip(found[1], 0.0, count - 1.0)
+        return float(found[0] * 360.0 / RAYS % 360.0), float(found[1] * STEP)
+
+    def _between(self, ray: float, at: float, off_ray: float, off_at: float) -> Points:
+        """Return the place between rays, not laid on the skin, (3,) [mm]."""
+        ray, at = ray + off_ray, np.clip(at + off_at, 0.0, self.rays.shape[1] - 1.001)
+        first, low = math.floor(ray), math.floor(at)
+        one, other = (self.rays[each % RAYS, low : low + 2] for each in (first, first + 1))
+        both = (1.0 - ray + first) * one + (ray - first) * other
+        return np.asarray((1.0 - at + low) * both[0] + (at - low) * both[1])
 
 
 def breast_map(skin: Mesh, landmarks: Landmarks, side: str) -> BreastMap:

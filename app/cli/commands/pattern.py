@@ -21,6 +21,7 @@ from core import __version__
 from core.document.garment_pattern import ALLOWANCE
 from core.document.lower_trunk import LowerTrunk
 from core.errors import PatternError
+from core.export.avatar import seam_lines, write_avatar
 from core.export.pattern_csv import write_pieces, write_seams
 from core.export.pattern_data import pattern_values, piece_values, seam_values
 from core.export.pattern_dxf import write_pattern_dxf
@@ -42,7 +43,7 @@ SHEET = "sheet"
 """One page that is as large as the layout."""
 
 _WIDTH = 1400.0  # of the cloth or paper that pieces are laid out on [mm]
-_FILES = ("dxf", "svg", "pdf", "plt", "pieces", "seams", "json")
+_FILES = ("dxf", "svg", "pdf", "plt", "pieces", "seams", "json", "avatar")
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -62,6 +63,8 @@ def add_options(parser: ArgumentParser) -> None:
     parser.add_argument("--pieces", metavar="FILE", help="output the list of pieces as CSV")
     parser.add_argument("--seams", metavar="FILE", help="output the list of seams as CSV")
     parser.add_argument("--json", metavar="FILE", help="output pieces, seams and the verdict as JSON")
+    avatar = "output the reshaped body with the seams as named lines: OBJ (mm) or GLB (m), y up"
+    parser.add_argument("--avatar", metavar="FILE", help=avatar)
 
 
 def run(options: Namespace) -> int:
@@ -133,10 +136,16 @@ def _write(pattern: Pattern, solved: SolvedDesign, options: Namespace) -> Iterat
         "pieces": lambda path: write_pieces(path, pieces),
         "seams": lambda path: write_seams(path, pieces),
         "json": lambda path: write_text(path, _json(pattern, solved)),
+        "avatar": lambda path: _write_avatar(path, pattern, solved),
     }
     for kind, path in asked.items():
         writers[kind](path)
         yield f"written to {path}"
+
+
+def _write_avatar(path: Path, pattern: Pattern, solved: SolvedDesign) -> None:
+    skin, worn = solved.solution.stages.body.smoothed, _worn_skin(solved)
+    write_avatar(path, skin.moved(worn), seam_lines(pattern.garment.curves, skin, worn))
 
 
 def _tiling(cut: list[Any], paper: str) -> Tiling:
