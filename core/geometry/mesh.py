@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 from scipy import sparse
+from scipy.spatial import cKDTree
 
 Points = npt.NDArray[np.float64]
 """Positions, shape (n, 3) [mm]."""
@@ -49,6 +50,10 @@ class _Topology:
     @cached_property
     def boundary_loops(self) -> tuple[Indices, ...]:
         return boundary_loops(self.faces)
+
+    @cached_property
+    def face_neighbours(self) -> Indices:
+        return face_neighbours(self.faces)
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,6 +108,16 @@ class Mesh:
     def boundary_loops(self) -> tuple[Indices, ...]:
         """Return closed loops of border vertices in face order, longest first; empty for a closed mesh."""
         return self._shared.boundary_loops
+
+    @property
+    def face_neighbours(self) -> Indices:
+        """Return the triangle beyond each side 0-1, 1-2, 2-0 of the faces, -1 if there is none, (m, 3)."""
+        return self._shared.face_neighbours
+
+    @cached_property
+    def centroid_tree(self) -> cKDTree:
+        """Return a tree of the centroids of the faces, quick to build, for ``nearest_faces`` to search."""
+        return cKDTree(self.vertices[self.faces].mean(axis=1), compact_nodes=False, balanced_tree=False)
 
     def enclosed_volume(self, apex: npt.ArrayLike = (0.0, 0.0, 0.0)) -> float:
         """Return the signed volume of the cone over the faces from ``apex`` [mm^3].
@@ -186,6 +201,25 @@ def edges(faces: Faces) -> Indices:
     sides = half_edges(faces)
     _, first = np.unique(_edge_keys(sides), return_index=True)
     return np.sort(sides[first], axis=1)
+
+
+def face_neighbours(faces: Faces) -> Indices:
+    """Return the triangle beyond each side 0-1, 1-2, 2-0 of ``faces`` (m, 3), -1 at a border, (m, 3).
+
+    Beyond a side of more than two triangles there is none.
+    """
+    sides = half_edges(faces)
+    low, high = sides.min(axis=1), sides.max(axis=1)
+    key = low * (high.max(initial=0) + 1) + high
+    order = np.argsort(key, kind="stable")
+    ordered = key[order]
+    same = ordered[1:] == ordered[:-1]
+    alone = np.append(True, ~same[:-1]) & np.append(~same[1:], True)
+    first = np.flatnonzero(same & alone)
+    beyond = np.full(len(key), -1, dtype=np.int64)
+    one, two = order[first], order[first + 1]
+    beyond[one], beyond[two] = two % len(faces), one % len(faces)
+    return beyond.reshape(3, -1).T
 
 
 def boundary_loops(faces: Faces) -> tuple[Indices, ...]:

@@ -7,6 +7,7 @@ has one distance, which its height does not.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,9 +15,10 @@ import numpy as np
 from core.errors import PatternError
 from core.geometry.closest_point import nearest_faces
 from core.geometry.mesh import Flags, Floats, Mesh, Points, submesh, unit
-from core.geometry.plane_sections import arc_length, cut, interpolate, join_segments
+from core.geometry.plane_sections import arc_length, interpolate
 from core.landmarks.types import Landmarks
 from core.messages import Message, SideName
+from core.pattern.plane_walk import walk_planes
 
 RAYS = 72
 """Ways from the bust point whose places are known; between two of them is interpolated."""
@@ -26,6 +28,8 @@ REACH = 240.0
 
 STEP = 2.0
 """Distance between the places of a way [mm]."""
+
+_TURNS = 8  # of finding clock position and distance of a place; three are the rule
 
 ABOVE = 1.08
 """The root above the bust point, where no landmark is, in parts of the mean of both sides."""
@@ -81,7 +85,30 @@ class BreastMap:
             (1.0 - part) * self.rays[ray, low] + part * self.rays[ray, low + 1]
             for ray in (first, (first + 1) % RAYS)
         )
-        return nearest_faces(self.skin, (1.0 - share) * one + share * other)[1]
+        return nearest_faces(self.skin, (1.0 - share) * one + share * other, self.skin.centroid_tree)[1]
+
+    def locate(self, place: Points) -> tuple[float, float]:
+        """Return the clock position [degrees] and the distance [mm] of a ``place`` (3,) [mm] of the skin."""
+        count = self.rays.shape[1]
+        away = np.linalg.norm(self.rays - place, axis=2)
+        away[:, 0] = np.where(np.arange(RAYS) == 0, away[:, 0], np.inf)
+        ray, at = divmod(int(away.argmin()), count)
+        found, step = np.array([float(ray), float(at)]), 1e-3
+        for _ in range(_TURNS):
+            here, beside, beyond = (self._between(*found, *off) for off in ((0, 0), (step, 0), (0, step)))
+            slopes = np.stack([beside - here, beyond - here], axis=1) / step
+            move = np.linalg.lstsq(slopes, place - here, rcond=None)[0]
+            found += np.clip(move, -1.0, 1.0)
+            found[1] = np.clip(found[1], 0.0, count - 1.0)
+        return float(found[0] * 360.0 / RAYS % 360.0), float(found[1] * STEP)
+
+    def _between(self, ray: float, at: float, off_ray: float, off_at: float) -> Points:
+        """Return the place between rays, not laid on the skin, (3,) [mm]."""
+        ray, at = ray + off_ray, np.clip(at + off_at, 0.0, self.rays.shape[1] - 1.001)
+        first, low = math.floor(ray), math.floor(at)
+        one, other = (self.rays[each % RAYS, low : low + 2] for each in (first, first + 1))
+        both = (1.0 - ray + first) * one + (ray - first) * other
+        return np.asarray((1.0 - at + low) * both[0] + (at - low) * both[1])
 
 
 def breast_map(skin: Mesh, landmarks: Landmarks, side: str) -> BreastMap:
@@ -91,25 +118,20 @@ def breast_map(skin: Mesh, landmarks: Landmarks, side: str) -> BreastMap:
     outer, inner = marks["outer"], marks["inner"]
     marks["fold"] = landmarks.position(f"fold_{side}")
     near = submesh(skin, _round(skin, apex))
-    apex = nearest_faces(near, apex[None])[1][0]
+    apex = nearest_faces(near, apex[None], near.centroid_tree)[1][0]
     axis = (apex - 0.5 * (outer + inner)) * [1.0, 1.0, 0.0]
     up, axis = np.array([0.0, 0.0, 1.0]), unit(axis)
     outward = np.cross(axis, up)
     outward *= np.sign(outward @ (outer - inner))
-    rays = np.stack([np.zeros((int(REACH / STEP) + 1, 3))] * RAYS)
-    known = 0
-    for number in range(RAYS // 2):
-        turn = np.radians(number * 360.0 / RAYS)
-        way = np.cos(turn) * up + np.sin(turn) * outward
-        for ray, sign in ((number, 1.0), (number + RAYS // 2, -1.0)):
-            walked = _walk(near, apex, axis, sign * way)
-            known += len(walked) > 1
-            rays[ray] = _evenly(walked)
-    if known < RAYS:
+    turn = np.radians(np.arange(RAYS) * 360.0 / RAYS)[:, None]
+    ways = np.cos(turn) * up + np.sin(turn) * outward
+    walked = walk_planes(near, apex, ways, unit(np.cross(axis, ways)), REACH)
+    if min(arc_length(each)[-1] for each in walked) < STEP:
         raise PatternError(
             Message("The skin around the {side} breast is incomplete.", side=SideName(side)),
             Message("Fill the holes at the Scan step."),
         )
+    rays = np.stack([_evenly(each) for each in walked])
     root = _root(rays, apex, (up, outward), marks)
     return BreastMap(near, rays, root)
 
@@ -118,23 +140,6 @@ def _round(skin: Mesh, apex: Points) -> Flags:
     """Return the faces round a bust point, (m,)."""
     near = np.linalg.norm(skin.vertices - apex, axis=1) < REACH + 20.0
     return np.asarray(near[skin.faces].any(axis=1))
-
-
-def _walk(skin: Mesh, apex: Points, axis: Points, way: Points) -> Points:
-    """Return the way along the skin from the bust point in a direction, in its plane with the ``axis``."""
-    curves = join_segments(cut(skin, apex, unit(np.cross(axis, way))))
-    if not curves:
-        return apex[None]
-    curve, closed = min(curves, key=lambda one: float(np.linalg.norm(one[0] - apex, axis=1).min()))
-    at = int(np.linalg.norm(curve - apex, axis=1).argmin())
-    if closed:
-        ways = [np.roll(curve[:-1], -at, axis=0), np.roll(curve[:-1][::-1], at + 1, axis=0)]
-    else:
-        ways = [curve[at:], curve[at::-1]]
-    ends = [way_[np.searchsorted(arc_length(way_), 15.0).clip(max=len(way_) - 1)] for way_ in ways]
-    chosen = ways[int(np.argmax([(end - apex) @ way for end in ends]))]
-    ahead = chosen[1:][(chosen[1:] - apex) @ way > 0.0] if len(chosen) < 4 else chosen[1:]
-    return np.concatenate([apex[None], ahead])
 
 
 def _evenly(walked: Points) -> Points:

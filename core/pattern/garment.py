@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 
@@ -18,7 +18,7 @@ from core.pattern.bridging import bridged_cut
 from core.pattern.cloth_library import cloths_of
 from core.pattern.flattening import FlatPanel, StrainSummary, strain_summary
 from core.pattern.notches import notched
-from core.pattern.panel import Panel, PanelSeed, cut_panels
+from core.pattern.panel import Bridge, Panel, PanelSeed, cut_panels
 from core.pattern.piece import NO_ELASTICS, EdgeElastic, Piece, Side, SideKey, merge_mirrored
 from core.pattern.places import BodyPlaces
 from core.pattern.seam_curves import SeamCurve, SeamDrawing
@@ -75,19 +75,28 @@ def cut_garment(drawing: SeamDrawing, block: Block, is_bridged: bool = True) -> 
     Raises PatternError, LineError for a body that it does not fit.
     """
     curves = drawing.curves(block)
-    cut = cut_surface(
-        drawing.places.skin,
-        tuple(SurfaceCurve(each.name, each.points, each.seam.slit, each.seam.edge) for each in curves),
+    cut = cut_surface(drawing.places.skin, surface_curves(curves))
+    panels = cut_panels(
+        cut, panel_seeds(drawing, block, curves), bridge=bridge_of(curves) if is_bridged else None
     )
-    wires, bands = ([at for at, each in enumerate(curves) if each.seam.kind == kind] for kind in (ROOT, RING))
-    bridge = partial(bridged_cut, wires=wires, bands=bands) if is_bridged else None
-    panels = cut_panels(cut, tuple(_seeds(drawing, block, curves)), bridge=bridge)
     return CutGarment(block, curves, panels, is_bridged)
 
 
-def _seeds(drawing: SeamDrawing, block: Block, curves: Sequence[SeamCurve]) -> list[PanelSeed]:
+def bridge_of(curves: Sequence[SeamCurve]) -> Bridge:
+    """Return what moves the skin to where cloth spans its hollows: it lies along wires and bands."""
+    wires, bands = ([at for at, each in enumerate(curves) if each.seam.kind == kind] for kind in (ROOT, RING))
+    return partial(bridged_cut, wires=wires, bands=bands)
+
+
+def surface_curves(curves: Iterable[SeamCurve]) -> tuple[SurfaceCurve, ...]:
+    """Return seams as curves that cut the skin."""
+    return tuple(SurfaceCurve(each.name, each.points, each.seam.slit, each.seam.edge) for each in curves)
+
+
+def panel_seeds(drawing: SeamDrawing, block: Block, curves: Sequence[SeamCurve]) -> tuple[PanelSeed, ...]:
+    """Return a place in each panel of a block whose seams are ``curves``. Raises PatternError."""
     levels, drawn = drawing.levels(block), {each.name: each.points for each in curves}
-    return [
+    return tuple(
         PanelSeed(
             f"{plan.name} {side}".rstrip(),
             drawing.places.place(plan.seed, side, levels, drawn),
@@ -96,7 +105,7 @@ def _seeds(drawing: SeamDrawing, block: Block, curves: Sequence[SeamCurve]) -> l
         )
         for plan in block.panels
         for side in (SIDES if plan.each else ("",))
-    ]
+    )
 
 
 def pattern_of(stages: Stages, worn_vertices: Points, plan: GarmentPattern) -> Pattern:

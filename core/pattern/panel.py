@@ -27,6 +27,9 @@ UP = (0.0, 0.0, 1.0)
 Bridge = Callable[[CutSkin, Faces], CutSkin]
 """What moves the faces of a garment, (k, 3) of the cut skin, to where its cloth is."""
 
+_SAME = 0.01
+"""Ends of pieces of one seam that are nearer are the same [mm]. Source: ours."""
+
 _LEVEL = 0.2
 """A panel whose slope upward is in the mean less than this lies level [1]. Source: ours."""
 
@@ -63,7 +66,8 @@ class Panel:
 
     ``mix`` (p, n): their shares, each row's sum 1; ``faces`` (m, 3); ``sides`` in order round it. The piece
     is turned so that the sum of its points times ``grain`` (p,) points up. ``start`` (p, 2) [mm] is a
-    first guess of the flat piece. ``covers`` [mm^2] is the area of the skin within its outline.
+    first guess of the flat piece. ``covers`` [mm^2] is the area of the skin within its outline; that has a
+    part of the triangles ``origin`` (k,) of the body.
     """
 
     name: str
@@ -74,6 +78,7 @@ class Panel:
     grain: Floats
     start: Floats
     covers: float
+    origin: Indices
 
     def places(self, vertices: Points) -> Points:
         """Return where the points are on a body of these ``vertices`` (n, 3), (p, 3) [mm]."""
@@ -96,12 +101,13 @@ def cut_panels(
     spacing: float | None = None,
     up: tuple[float, ...] = UP,
     bridge: Bridge | None = None,
+    kept: tuple[Panel, ...] = (),
 ) -> tuple[Panel, ...]:
     """Return the panels round ``seeds`` on a ``cut`` skin; ``up`` is the direction of their grain lines.
 
     Points are ``spacing`` [mm] apart, or as it suits the panel's area. Neighbours have the same points on
-    their seams. ``bridge`` moves the skin of all panels to where cloth spans its
-    hollows. Raises PatternError where a panel is open or in the way of another.
+    their seams, also those that are ``kept`` as they were cut before. ``bridge`` moves the skin of all panels
+    to where cloth spans its hollows. Raises PatternError where a panel is open or in the way of another.
     """
     net = seam_net(cut)
     regions = skin_regions(net, tuple(seed.name for seed in seeds), np.array([seed.place for seed in seeds]))
@@ -113,17 +119,47 @@ def cut_panels(
     for region, step in zip(regions, steps, strict=True):
         for piece in [run[0] for run in region.runs] + [slit[0] for slit in region.slits]:
             finest[piece] = min(step, finest.get(piece, np.inf))
-    samples = {piece: _Samples.of(cut, net.pieces[piece], step) for piece, step in finest.items()}
+    beside = _kept_sides(net, list(finest), kept)
+    samples = {
+        piece: _Samples.of(cut, net.pieces[piece], step, beside[piece][1] if piece in beside else None)
+        for piece, step in finest.items()
+    }
     parts = [
         _even_panel(net, region, samples, seed, np.array(up), step)
         for region, seed, step in zip(regions, seeds, steps, strict=True)
     ]
     runs = [keys for _, keys in parts]
     where = {key: (seeds[at].name, side) for at, keys in enumerate(runs) for side, key in enumerate(keys)}
+    where |= {key: place for key, _, place in beside.values() if key not in where}
     return tuple(
         replace(panel, sides=tuple(_sewn(net, *pair, where) for pair in zip(panel.sides, keys, strict=True)))
         for panel, keys in parts
     )
+
+
+_Key = tuple[int, bool]
+"""A piece of border, and whether it is followed as it leads."""
+
+
+def _kept_sides(
+    net: SeamNet, pieces: list[int], kept: tuple[Panel, ...]
+) -> dict[int, tuple[_Key, int, tuple[str, int]]]:
+    """Return for pieces of border on which a panel is ``kept``: its way, how many steps, name and side."""
+    ends: dict[str, list[tuple[int, Points]]] = {}
+    for number in pieces:
+        piece = net.pieces[number]
+        places = net.cut.vertices[piece.chain[[0, -1]]]
+        ends.setdefault(net.cut.curves[piece.curve].name, []).append((number, places))
+    found = {}
+    for panel in kept:
+        places = panel.places(net.cut.skin.vertices)
+        for at, side in enumerate(panel.sides):
+            own = places[side.points[[0, -1]]]
+            for number, theirs in ends.get(side.name, ()):
+                for forward in (True, False):
+                    if np.abs(own - (theirs if forward else theirs[::-1])).max() < _SAME:
+                        found[number] = (number, forward), len(side.points) - 1, (panel.name, at)
+    return found
 
 
 def _sewn(
@@ -143,11 +179,11 @@ class _Samples:
     share: Floats
 
     @classmethod
-    def of(cls, cut: CutSkin, piece: BorderPiece, spacing: float) -> _Samples:
-        """Divide a piece into stretches of about ``spacing`` [mm], both ends kept."""
+    def of(cls, cut: CutSkin, piece: BorderPiece, spacing: float, count: int | None) -> _Samples:
+        """Divide a piece into ``count`` stretches, or such of about ``spacing`` [mm], both ends kept."""
         along = arc_length(cut.vertices[piece.chain])
         ring = piece.chain[0] == piece.chain[-1]
-        count = max(round(float(along[-1]) / spacing), 3 if ring else 1)
+        count = count or max(round(float(along[-1]) / spacing), 3 if ring else 1)
         places = np.linspace(0.0, along[-1], count + 1)
         at = np.clip(np.searchsorted(along, places, side="right") - 1, 0, len(along) - 2)
         return cls(at, np.clip((places - along[at]) / np.diff(along)[at], 0.0, 1.0))
@@ -237,7 +273,7 @@ def _even_panel(
     sides, keys = _sides(faces, former, outline)
     start = points[former]
     grain = _grain(places, faces, start, up, seed.turn)
-    return Panel(seed.name, seed.cloth, mix, faces, sides, grain, start, region.area), keys
+    return Panel(seed.name, seed.cloth, mix, faces, sides, grain, start, region.area, region.origin), keys
 
 
 def _sides(

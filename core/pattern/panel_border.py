@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from scipy import sparse
 
 from core.errors import PatternError
 from core.geometry.closest_point import nearest_faces
-from core.geometry.mesh import Faces, Indices, Mesh, Points, area_vectors, half_edges
+from core.geometry.mesh import Faces, Indices, Mesh, Points, area_vectors, face_neighbours, half_edges
 from core.messages import Message
 from core.pattern.even_points import cut_open
 from core.pattern.surface_cut import CutSkin
-from core.pattern.surface_trace import face_neighbours
 
 Run = tuple[int, bool, Indices]
 """The number of a piece of border, whether it is followed as it leads, and the vertices in order, (k,)."""
@@ -99,7 +98,7 @@ class SkinRegion:
     """The skin of a panel: ``faces`` (m, 3) of its own vertices, each one ``source`` (v,) of the cut skin's.
 
     Its border is made of ``runs``, counter-clockwise; ``slits`` are pieces within it and their vertices.
-    ``area`` [mm^2].
+    ``area`` [mm^2]; ``origin`` (k,) are the triangles of the skin that it has a part of.
     """
 
     faces: Faces
@@ -107,6 +106,7 @@ class SkinRegion:
     runs: tuple[Run, ...]
     slits: tuple[Run, ...]
     area: float
+    origin: Indices
 
     def on(self, vertices: Points) -> SkinRegion:
         """Return the same where the cut skin has these ``vertices`` (w, 3) [mm]."""
@@ -146,7 +146,7 @@ def skin_regions(net: SeamNet, names: tuple[str, ...], seeds: Points) -> tuple[S
 
 def _faces_at(cut: CutSkin, places: Points) -> Indices:
     """Return the triangle of the cut skin at each place."""
-    face, place = nearest_faces(cut.skin, places)
+    face, place = nearest_faces(cut.skin, places, cut.skin.centroid_tree)
     found = []
     for origin, foot in zip(face.tolist(), place, strict=True):
         rows = np.flatnonzero(cut.origin == origin)
@@ -169,13 +169,14 @@ def _region(net: SeamNet, rows: Indices, name: str) -> SkinRegion:
     border = ~np.isin(_keys(sides), _keys(sides[:, ::-1]))
     if (edge[border] < 0).any():
         raise _not_a_disc(net, Message('The panel "{name}" is open.', name=name))
-    runs = _in_order(_runs(net, edge[border], sides[border], source))
+    runs = _in_order(sorted(_runs(net, edge[border], sides[border], source), key=partial(_rank, net)))
     forward = slit & (net.begin[edge] == source[sides[:, 0]])
     slits = _runs(net, edge[forward], sides[forward], source)
     characteristic = len(source) - (len(sides) + int(border.sum())) // 2 + len(faces)
     if characteristic != 1 or not runs:
         raise _not_a_disc(net, Message('The panel "{name}" has no single closed outline.', name=name))
-    return SkinRegion(faces, source, runs, tuple(slits), _area(cut.vertices[source], faces))
+    area = _area(cut.vertices[source], faces)
+    return SkinRegion(faces, source, runs, tuple(slits), area, np.unique(cut.origin[rows]))
 
 
 def _area(places: Points, faces: Faces) -> float:
@@ -197,6 +198,13 @@ def _runs(net: SeamNet, edge: Indices, sides: Indices, source: Indices) -> list[
         for rows in np.split(np.arange(len(sides)), ends)
         if len(rows)
     ]
+
+
+def _rank(net: SeamNet, run: Run) -> tuple[int, int, bool]:
+    """Return where a run is on which curve: with the first, a panel begins also when it is cut again."""
+    piece = net.pieces[run[0]]
+    chain = net.cut.chains[piece.curve]
+    return piece.curve, int(np.isin(chain, piece.chain[:2]).argmax()), run[1]
 
 
 def _in_order(runs: list[Run]) -> tuple[Run, ...]:

@@ -22,12 +22,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from core.control_mesh.embedding import locate_on_grid
 from core.control_mesh.fit import BUST, LOWER, ControlMesh
 from core.errors import PatternError
-from core.geometry.closest_point import centroid_tree, nearest_faces
+from core.geometry.closest_point import nearest_faces
 from core.geometry.mesh import Floats, Mesh, Points
 from core.geometry.plane_sections import arc_length, interpolate
 from core.landmarks.lower_trunk.types import LowerLandmarks
@@ -39,10 +38,10 @@ from core.pipeline.build import Stages
 
 _NUMBER = r"(\d+(?:\.\d+)?)"
 _OFF = r"([+-]\d+(?:\.\d+)?)?"
-_ROOT = re.compile(rf"root {_NUMBER}(?:\*{_NUMBER})?{_OFF}")
-_RING = re.compile(rf"ring ([\w ]+?) {_NUMBER}{_OFF}")
-_CENTRE = re.compile(rf"(front|back) ([a-z][a-z ]*?){_OFF}")
-_CELL = re.compile(rf"(below )?r{_NUMBER}c{_NUMBER}")
+ROOT_WORD = re.compile(rf"root {_NUMBER}(?:\*{_NUMBER})?{_OFF}")
+RING_WORD = re.compile(rf"ring ([\w ]+?) {_NUMBER}{_OFF}")
+CENTRE_WORD = re.compile(rf"(front|back) ([a-z][a-z ]*?){_OFF}")
+CELL_WORD = re.compile(rf"(below )?r{_NUMBER}c{_NUMBER}")
 _EDGE = 20.0  # above the edge of a scan its levels are whole [mm]
 _BEARING = np.radians(2.0)  # between places of a ring [rad]
 
@@ -129,10 +128,8 @@ class BodyPlaces:
 
         ``levels`` are heights by name [mm], ``drawn`` the curves so far, by name with side.
         """
-        text, _, onto = (part.strip() for part in word.partition(">"))
-        for own in SIDES:
-            if text.endswith(f" {own}"):
-                text, side = text.removesuffix(f" {own}"), own
+        text, own, onto = parts_of(word)
+        side = own or side
         place = self._place(text, side, levels)
         if place is None:
             raise PatternError(
@@ -147,22 +144,22 @@ class BodyPlaces:
             name = text.removeprefix("point ")
             found = self._landmark(f"{name}_{side}")
             return self._landmark(name) if found is None else found
-        if match := _CELL.fullmatch(text):
+        if match := CELL_WORD.fullmatch(text):
             region = LOWER if match[1] else BUST
             return self._cell(region, float(match[2]), float(match[3]), -1.0 if side == "right" else 1.0)
         return self._measured(text, side, levels)
 
     def _measured(self, text: str, side: str, levels: Mapping[str, float]) -> Points | None:
         """Return a place on a root or at a level, None for a word that is neither."""
-        if match := _ROOT.fullmatch(text):
+        if match := ROOT_WORD.fullmatch(text):
             clock, breast = float(match[1]), self.breasts[side]
             far = float(breast.root_distance(clock)) * float(match[2] or 1.0) + float(match[3] or 0.0)
             return np.asarray(breast.places(np.array([clock]), np.array([far]))[0])
-        if match := _RING.fullmatch(text):
-            z = self._height(match[1], levels) + float(match[3] or 0.0)
+        if match := RING_WORD.fullmatch(text):
+            z = self.level_height(match[1], levels) + float(match[3] or 0.0)
             return self.at_share(z, float(match[2]), side)
-        if match := _CENTRE.fullmatch(text):
-            z = self._height(match[2], levels) + float(match[3] or 0.0)
+        if match := CENTRE_WORD.fullmatch(text):
+            z = self.level_height(match[2], levels) + float(match[3] or 0.0)
             return self.at_share(z, 0.0 if match[1] == "front" else 1.0, side or "left")
         return None
 
@@ -172,7 +169,8 @@ class BodyPlaces:
         along = arc_length(ring)
         return np.asarray(interpolate(np.array([share * along[-1]]), along, ring)[0])
 
-    def _height(self, name: str, levels: Mapping[str, float]) -> float:
+    def level_height(self, name: str, levels: Mapping[str, float]) -> float:
+        """Return the height of a level or of one of ``REFERENCES`` [mm]. Raises PatternError."""
         return levels[name] if name in levels else self.height(name)
 
     def _cell(self, region: str, row: float, column: float, sign: float) -> Points | None:
@@ -187,15 +185,18 @@ class BodyPlaces:
             return None
         corners, weights = locate_on_grid(control.grid, np.array([[row, sign * column]]))
         flat = np.einsum("kc,kcx->kx", weights, control.mesh.vertices[corners])
-        return np.asarray(nearest_faces(self.skin, flat, self._tree)[1][0])
-
-    @cached_property
-    def _tree(self) -> cKDTree:
-        return centroid_tree(self.skin)
+        return np.asarray(nearest_faces(self.skin, flat, self.skin.centroid_tree)[1][0])
 
     def _landmark(self, name: str) -> Points | None:
         every = {**self.landmarks.points, **(self.lower.points if self.lower is not None else {})}
         return every[name].position if name in every else None
+
+
+def parts_of(word: str) -> tuple[str, str, str]:
+    """Return the parts of a word: the place, the side of its own or "", and the seam that it ends on."""
+    text, _, onto = (part.strip() for part in word.partition(">"))
+    own = next((side for side in SIDES if text.endswith(f" {side}")), "")
+    return text.removesuffix(f" {own}") if own else text, own, onto
 
 
 def _half_round(points: Floats, axis: Floats, z: float, sign: float) -> Points:

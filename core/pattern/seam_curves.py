@@ -10,7 +10,7 @@ import numpy as np
 
 from core.document.block import RING, ROOT, Block, Seam
 from core.garment.curve_smoothing import smooth
-from core.geometry.closest_point import centroid_tree, nearest_faces
+from core.geometry.closest_point import nearest_faces
 from core.geometry.geodesic import shortest_path
 from core.geometry.mesh import Points
 from core.geometry.plane_sections import arc_length, interpolate, resample
@@ -18,6 +18,8 @@ from core.pattern.places import BodyPlaces
 
 STEP = 3.0
 """Distance between the places of a curve [mm]."""
+
+_MOST_WAYS = 400  # between two places that are kept
 
 _ROUNDING = 6  # passes of smoothing that round a curve at the places that it goes through
 
@@ -37,11 +39,15 @@ class SeamCurve:
 
 
 class SeamDrawing:
-    """Draws the seams of blocks on one body."""
+    """Draws the seams of blocks on one body.
+
+    A seam that is as it was in the block that was drawn last has the same array of points, not drawn again.
+    """
 
     def __init__(self, places: BodyPlaces) -> None:
         self.places = places
-        self._tree = centroid_tree(places.skin)
+        self._curves: dict[_Key, Points] = {}
+        self._ways: dict[bytes, Points] = {}
 
     def levels(self, block: Block) -> Mapping[str, float]:
         """Return the heights of the levels of a block [mm]. Raises PatternError."""
@@ -51,11 +57,15 @@ class SeamDrawing:
         """Return the curves of a block in its order. Raises PatternError, LineError."""
         levels = self.levels(block)
         drawn: dict[str, Points] = {}
-        found = []
+        found, former = [], self._curves
+        self._curves = {}
         for seam in block.seams:
             for name, side in seam.named():
-                points = self._laid(self._drawn(seam, side, levels, drawn))
-                drawn[name] = points
+                key = _key(seam, side, levels, drawn)
+                points = former.get(key)
+                if points is None:
+                    points = self._laid(self._drawn(seam, side, levels, drawn))
+                self._curves[key] = drawn[name] = points
                 found.append(SeamCurve(seam, side, points))
         return tuple(found)
 
@@ -83,11 +93,30 @@ class SeamDrawing:
 
     def _way(self, stops: list[Points]) -> Points:
         """Return the shortest ways over the skin between places, rounded where they meet."""
-        pieces = [shortest_path(self.places.skin, start, end) for start, end in pairwise(stops)]
+        pieces = [self._shortest(start, end) for start, end in pairwise(stops)]
         whole = np.concatenate([pieces[0], *(piece[1:] for piece in pieces[1:])])
         return smooth(resample(whole, STEP), _ROUNDING, closed=False)
+
+    def _shortest(self, start: Points, end: Points) -> Points:
+        key = start.tobytes() + end.tobytes()
+        if key not in self._ways:
+            if len(self._ways) >= _MOST_WAYS:
+                self._ways.clear()
+            self._ways[key] = shortest_path(self.places.skin, start, end)
+        return self._ways[key]
 
     def _laid(self, points: Points) -> Points:
         """Return a curve evenly divided, on the skin; its ends stay."""
         even = resample(points, STEP)
-        return nearest_faces(self.places.skin, even, self._tree)[1]
+        return nearest_faces(self.places.skin, even, self.places.skin.centroid_tree)[1]
+
+
+_Key = tuple[object, ...]
+
+
+def _key(seam: Seam, side: str, levels: Mapping[str, float], drawn: Mapping[str, Points]) -> _Key:
+    """Return all that a curve is drawn from: its seam, the levels, and the curves that it may end on."""
+    onto = {word.partition(">")[2].strip() for word in seam.places_of(side)} - {""}
+    met = [id(drawn[name]) for each in sorted(onto) for name in (f"{each} {side}", each) if name in drawn]
+    own = (seam.name, seam.kind, seam.places_of(side), seam.level, seam.span, seam.below, side)
+    return (*own, *levels.items(), *met)

@@ -1,19 +1,68 @@
-"""Points of a seam moved over the body: the block with other words, spans and heights for them."""
+"""A point of a seam moved over the body: the block with another word, span or height for it."""
 
 from __future__ import annotations
 
-from core.document.block import Block
+from dataclasses import replace
+
+from core.document.block import RING, WAY, Block, Seam
 from core.geometry.mesh import Points
+from core.landmarks.types import SIDES
+from core.pattern.place_words import moved_level, moved_span, moved_word, seam_handles
 from core.pattern.seam_curves import SeamDrawing
 
+LEVEL = 2
+"""The number of the handle in the middle of a ring, which moves its level."""
 
-def seam_handles(drawing: SeamDrawing, block: Block, curve: str) -> list[tuple[int, Points]]:
-    seam = block.seam(curve)
-    side = curve.removeprefix(seam.name).strip()
-    levels = drawing.levels(block)
+
+def handles_of(drawing: SeamDrawing, block: Block, curve: str) -> list[tuple[int, Points]]:
+    """Return the handles of a curve on the body at rest: numbers and places (3,) [mm].
+
+    Those of a way are its places; a root and a ring have their ends, a ring its level (``LEVEL``) too. Raises
+    PatternError, LineError for a body that the block does not fit, KeyError for an unknown curve.
+    """
+    seam, side = block.seam(curve), side_of(block, curve)
     drawn = {each.name: each.points for each in drawing.curves(block)}
-    return [(k, drawing.places.place(w, side, levels, drawn)) for k, w in enumerate(seam.places_of(side))]
+    found = seam_handles(drawing, seam, side, drawing.levels(block), drawn)
+    if seam.kind == RING:
+        points = drawn[curve]
+        found.append((LEVEL, points[len(points) // 2]))
+    return found
 
 
-def moved_block(drawing: SeamDrawing, block: Block, curve: str, number: int, place: Points) -> Block:
-    return block
+def moved_block(drawing: SeamDrawing, block: Block, curve: str, handle: int, place: Points) -> Block:
+    """Return the block with a handle of a curve at the place of the skin nearest to ``place`` (3,) [mm].
+
+    A seam on both sides is moved on both, unless its right side has places of its own. Raises PatternError
+    for a place that cannot be told, KeyError for an unknown curve.
+    """
+    seam, side = block.seam(curve), side_of(block, curve)
+    levels = drawing.levels(block)
+    if seam.kind == RING and handle == LEVEL:
+        level = next(each for each in block.levels if each.name == seam.level)
+        above = moved_level(drawing.places, level, place)
+        moved = tuple(replace(each, above=above) if each is level else each for each in block.levels)
+        return replace(block, levels=moved)
+    if seam.kind != WAY:
+        span = moved_span(drawing.places, seam, handle, side, levels, place)
+        return with_seam(block, replace(seam, span=span))
+    words = list(seam.places_of(side))
+    words[handle] = moved_word(drawing.places, words[handle], side, levels, place)
+    own = bool(seam.right) and side == "right"
+    return with_seam(block, replace(seam, **{"right" if own else "places": tuple(words)}))  # type: ignore[arg-type]
+
+
+def with_seam(block: Block, seam: Seam) -> Block:
+    """Return the block with another seam of the same name."""
+    return replace(block, seams=tuple(seam if each.name == seam.name else each for each in block.seams))
+
+
+def with_own_sides(block: Block, name: str, apart: bool) -> Block:
+    """Return the block in which each side of a seam has places of its own, or the left one's for both."""
+    seam = block.seam(name)
+    return with_seam(block, replace(seam, right=seam.places if apart else ()))
+
+
+def side_of(block: Block, curve: str) -> str:
+    """Return the side of a curve by its name, nothing for one over the middle."""
+    seam = block.seam(curve)
+    return next((side for side in SIDES if seam.each and curve == f"{seam.name} {side}"), "")

@@ -9,7 +9,7 @@ from scipy import sparse
 
 from core.geometry.mesh import Faces, Flags, Floats, Indices, Mesh, Points
 from core.pattern.point_triangulation import greedy_triangles
-from core.pattern.surface_trace import MARGIN, SurfaceCurve, Traces, face_neighbours, trace_curves
+from core.pattern.surface_trace import MARGIN, SurfaceCurve, Traces, trace_curves
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,15 +33,15 @@ class CutSkin:
     chains: tuple[Indices, ...]
 
 
-def cut_surface(mesh: Mesh, curves: tuple[SurfaceCurve, ...]) -> CutSkin:
+def cut_surface(mesh: Mesh, curves: tuple[SurfaceCurve, ...], within: Flags | None = None) -> CutSkin:
     """Make ``curves`` on ``mesh`` edges of it; they may cross and end on each other.
 
-    Raises PatternError where a curve cannot be followed over the skin.
+    Triangles that no curve touches are left out unless they are ``within`` (m,); by default all are. Raises
+    PatternError where a curve cannot be followed over the skin.
     """
-    neighbours = face_neighbours(mesh.faces)
-    points, gaps = _points_and_gaps(mesh, trace_curves(mesh, curves, neighbours))
+    points, gaps = _points_and_gaps(mesh, trace_curves(mesh, curves))
     points, gaps = _divided(mesh, points, gaps)
-    faces, origin = _cut_faces(mesh, neighbours, points, gaps)
+    faces, origin = _cut_faces(mesh, points, gaps, within)
     low, high = np.minimum(gaps.start, gaps.end), np.maximum(gaps.start, gaps.end)
     key, first = np.unique(low * len(points.corners) + high, return_index=True)
     edges = np.stack([key // len(points.corners), key % len(points.corners)], axis=1)
@@ -229,7 +229,7 @@ def _between(mesh: Mesh, points: _Vertices, gaps: _Gaps) -> tuple[Indices, Indic
     return gap_of.astype(np.int64), vertex_of.astype(np.int64), share_of.astype(np.float64)
 
 
-def _cut_faces(mesh: Mesh, neighbours: Indices, points: _Vertices, gaps: _Gaps) -> tuple[Faces, Indices]:
+def _cut_faces(mesh: Mesh, points: _Vertices, gaps: _Gaps, within: Flags | None) -> tuple[Faces, Indices]:
     """Cut the triangles that curves touch; return all, and the triangle of the skin each is of."""
     face = np.concatenate([gaps.face, gaps.face])
     vertex = np.concatenate([gaps.start, gaps.end])
@@ -237,7 +237,7 @@ def _cut_faces(mesh: Mesh, neighbours: Indices, points: _Vertices, gaps: _Gaps) 
     face, vertex = face[added], vertex[added]
     zero = points.within(mesh.faces[face], vertex) == 0.0
     edge = zero.any(axis=1)
-    across = neighbours[face, (zero.argmax(axis=1) + 1) % 3]
+    across = mesh.face_neighbours[face, (zero.argmax(axis=1) + 1) % 3]
     edge &= across >= 0
     key = np.concatenate([face, across[edge]]) * len(points.corners) + np.concatenate([vertex, vertex[edge]])
     face, vertex = np.divmod(np.unique(key), len(points.corners))
@@ -257,7 +257,9 @@ def _cut_faces(mesh: Mesh, neighbours: Indices, points: _Vertices, gaps: _Gaps) 
         owner, faces = greedy_triangles(shares, places[ids], _lines(rows, ids, *chords))
         parts.append(ids[owner[:, None], faces])
         owners.append(rows[owner])
-    whole = np.setdiff1d(np.arange(len(mesh.faces)), touched)
+    left = np.ones(len(mesh.faces), dtype=bool) if within is None else within.copy()
+    left[touched] = False
+    whole = np.flatnonzero(left)
     return np.concatenate([mesh.faces[whole], *parts]), np.concatenate([whole, *owners])
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from core.errors import PatternError
 from core.geometry.closest_point import barycentric, nearest_faces
-from core.geometry.mesh import Faces, Floats, Indices, Mesh, Points, half_edges, unit
+from core.geometry.mesh import Floats, Indices, Mesh, Points, unit
 from core.messages import Message
 
 SNAP = 4.0
@@ -68,27 +68,8 @@ class Traces:
     node_shares: Floats
 
 
-def face_neighbours(faces: Faces) -> Indices:
-    """Return the triangle beyond each side 0-1, 1-2, 2-0 of ``faces`` (m, 3), -1 at a border, (m, 3).
-
-    Beyond a side of more than two triangles there is none.
-    """
-    sides = half_edges(faces)
-    low, high = sides.min(axis=1), sides.max(axis=1)
-    key = low * (high.max(initial=0) + 1) + high
-    order = np.argsort(key, kind="stable")
-    ordered = key[order]
-    same = ordered[1:] == ordered[:-1]
-    alone = np.append(True, ~same[:-1]) & np.append(~same[1:], True)
-    first = np.flatnonzero(same & alone)
-    beyond = np.full(len(key), -1, dtype=np.int64)
-    one, two = order[first], order[first + 1]
-    beyond[one], beyond[two] = two % len(faces), one % len(faces)
-    return beyond.reshape(3, -1).T
-
-
-def trace_curves(mesh: Mesh, curves: tuple[SurfaceCurve, ...], neighbours: Indices) -> Traces:
-    """Follow ``curves`` over ``mesh``, whose triangles have these ``neighbours`` (m, 3).
+def trace_curves(mesh: Mesh, curves: tuple[SurfaceCurve, ...]) -> Traces:
+    """Follow ``curves`` over ``mesh``.
 
     An end within ``SNAP`` of another curve is put on it. Between two points a curve is where the plane
     through both that is square to the skin cuts it. Raises PatternError where the skin does not connect them.
@@ -96,7 +77,7 @@ def trace_curves(mesh: Mesh, curves: tuple[SurfaceCurve, ...], neighbours: Indic
     joined, nodes = _join_ends(curves)
     ends = np.cumsum([len(points) for points in joined])
     node = np.concatenate(nodes)
-    face, place = nearest_faces(mesh, np.concatenate(joined))
+    face, place = nearest_faces(mesh, np.concatenate(joined), mesh.centroid_tree)
     shares = np.clip(barycentric(mesh.vertices[mesh.faces[face]], place), 0.0, None)
     shares = np.maximum(shares, np.where(node >= 0, MARGIN, _INSIDE)[:, None])
     shares /= shares.sum(axis=1, keepdims=True)
@@ -104,7 +85,7 @@ def trace_curves(mesh: Mesh, curves: tuple[SurfaceCurve, ...], neighbours: Indic
     first, shared = np.flatnonzero(node >= 0)[first], np.flatnonzero(node >= 0)
     face[shared], shares[shared] = face[first[node[shared]]], shares[first[node[shared]]]
     place = np.einsum("ij,ijk->ik", shares, mesh.vertices[mesh.faces[face]])
-    crossings = _walk(mesh, neighbours, face, place, np.delete(np.arange(len(face)), ends - 1))
+    crossings = _walk(mesh, mesh.face_neighbours, face, place, np.delete(np.arange(len(face)), ends - 1))
     if len(crossings.lost):
         lost = curves[int(np.searchsorted(ends, crossings.lost[0], side="right"))]
         raise PatternError(

@@ -19,16 +19,17 @@ from core.document.design import Design
 from core.document.garment_pattern import GarmentPattern
 from core.document.lower_trunk import LowerTrunk
 from core.errors import PatternError
+from core.export.avatar import seam_lines, write_avatar
 from core.export.report_data import Heading
 from core.messages import Message
 from core.pattern.annotation import elastic_words
 from core.pattern.block_library import built_in_blocks, find_block, read_block, write_block
 from core.pattern.cloth_csv import read_cloth, write_template
 from core.pattern.cloth_library import ALL_PIECES, built_in, find_cloth, with_cloth
-from core.pattern.garment import pattern_of
+from core.pattern.garment import pattern_of, worn_skin
 from core.pattern.layout import PAPERS, Tiling
 
-_FILES = ("dxf", "svg", "pdf", "plt", "pieces", "seams", "json", "save_block")
+_FILES = ("dxf", "svg", "pdf", "plt", "pieces", "seams", "json", "save_block", "avatar")
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -64,6 +65,8 @@ def _add_files(parser: ArgumentParser) -> None:
     parser.add_argument("--pieces", metavar="FILE", help="output the list of pieces as CSV")
     parser.add_argument("--seams", metavar="FILE", help="output the list of seams as CSV")
     parser.add_argument("--json", metavar="FILE", help="output pieces, seams and the verdict as JSON")
+    avatar = "output the reshaped body with the seams as named lines: OBJ (mm) or GLB (m), y up"
+    parser.add_argument("--avatar", metavar="FILE", help=avatar)
 
 
 def run(options: Namespace) -> int:
@@ -163,9 +166,18 @@ def _write(cut: CutPattern, solved: SolvedDesign, options: Namespace) -> Iterato
             _write_pdf(path, tiling_of(cut, options.paper), heading)
         elif kind == "save_block":
             write_block(path, cut.plan.block)
+        elif kind == "avatar":
+            _write_avatar(path, cut, solved)
         else:
             write_pattern(path, f"dxf-{options.dxf_standard}" if kind == "dxf" else kind, cut, heading, found)
         yield f"written to {path}"
+
+
+def _write_avatar(path: Path, cut: CutPattern, solved: SolvedDesign) -> None:
+    stages = solved.solution.stages
+    worn = worn_skin(stages, solved.solution.body.vertices)
+    skin = stages.body.smoothed
+    write_avatar(path, skin.moved(worn), seam_lines(cut.pattern.garment.curves, skin, worn))
 
 
 def _write_pdf(path: Path, tiling: Tiling, heading: Heading) -> None:

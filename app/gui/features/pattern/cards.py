@@ -6,10 +6,19 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QFrame,
+    QGridLayout,
+    QHBoxLayout,
+    QLabel,
+    QSlider,
+    QVBoxLayout,
+    QWidget,
+)
 
 from app.gui.features.pattern.dart_view import DartChartView
-from app.gui.theme.stylesheet import label, set_tag
+from app.gui.theme.stylesheet import font, label, set_tag
 from app.gui.widgets.basic import button, sentence
 from app.gui.widgets.menu import Menu, pull_down
 from app.gui.widgets.option_field import AmountEdit, OptionCombo
@@ -18,7 +27,7 @@ from app.i18n.catalog import number, tr, tr_context
 from app.i18n.lengths import length
 from app.presenters.model_options import Amount
 from app.presenters.pattern import PieceRow, SeamRow
-from core.document.block import LARGEST_ALLOWANCE
+from core.document.block import LARGEST_ALLOWANCE, WAY, Seam
 from core.document.cloth import Cloth
 from core.pattern.dart_chart import DartChart
 
@@ -204,6 +213,7 @@ class SeamCard(_Card):
     allowance_changed = Signal(object)
     walked = Signal(object)
     reset_requested = Signal()
+    apart_changed = Signal(bool)
 
     def __init__(self) -> None:
         super().__init__()
@@ -223,6 +233,11 @@ class SeamCard(_Card):
         tip = tr("Left empty it is that of the whole pattern")
         self.add_field(amount.title, tip, self.allowance)
         self.column.addLayout(self._make_walk())
+        self.apart = QCheckBox(tr("Each side its own"))
+        self.apart.setFont(font("secondary"))
+        set_tip(self.apart, tr("Else a point that is moved on one side is moved on the other too"))
+        self.apart.clicked.connect(self.apart_changed)
+        self.column.addWidget(self.apart)
         self.column.addWidget(self.hint)
         self.reset = button(tr("Reset seam"))
         set_tip(self.reset, tr("Move its points back to where the block has them"))
@@ -242,13 +257,16 @@ class SeamCard(_Card):
         row.addWidget(self.so_far)
         return row
 
-    def show_seam(
-        self, title: str, rows: Sequence[SeamRow], allowance: float | None, can_reset: bool
-    ) -> None:
-        """Show a seam by all pairs of pieces that it joins; one without pairs is an edge."""
+    def show_seam(self, title: str, rows: Sequence[SeamRow], seam: Seam, *, can_reset: bool) -> None:
+        """Show a seam by all pairs of pieces that it joins; one without pairs is an edge.
+
+        It is reset where it ``can_reset``: it lies elsewhere than in the block that comes with Busk.
+        """
         self.show()
         self.heading.setText(title)
-        self.allowance.show_value(allowance)
+        self.allowance.show_value(seam.allowance)
+        self.apart.setVisible(seam.each and seam.kind == WAY)
+        self.apart.setChecked(bool(seam.right))
         self.reset.setVisible(can_reset)
         self.note.setText(" ".join(row.note for row in rows if row.note))
         self.note.setVisible(bool(self.note.text()))

@@ -331,7 +331,7 @@ class PatternController(QObject):
             return
         rows = [row for row in seam_rows(result.pattern) if row.name == self.seam]
         self.panel.seam_card.show_seam(
-            seam_title(self.seam), rows, seam.allowance, self.editing.is_moved(plan.block, seam)
+            seam_title(self.seam), rows, seam, can_reset=self.editing.is_moved(plan.block, seam)
         )
         self._walk(self.panel.seam_card.knob.value() / max(self.panel.seam_card.knob.maximum(), 1))
 

@@ -19,7 +19,7 @@ from core.geometry.plane_sections import arc_length, interpolate
 from core.pattern.block_library import built_in_blocks
 from core.pattern.cloth_library import find_cloth, with_cloth
 from core.pattern.garment import Pattern
-from core.pattern.seam_moves import moved_block, seam_handles
+from core.pattern.seam_moves import handles_of, moved_block, with_own_sides, with_seam
 
 if TYPE_CHECKING:
     from app.gui.context import AppContext
@@ -48,6 +48,7 @@ class SeamEditing(QObject):
         layer.cancelled.connect(self._cancel)
         panel.seam_card.allowance_changed.connect(self.set_allowance)
         panel.seam_card.reset_requested.connect(self.reset)
+        panel.seam_card.apart_changed.connect(self.set_apart)
         panel.piece_card.cloth_chosen.connect(self.choose_cloth)
         panel.piece_card.turn_changed.connect(self.turn)
 
@@ -69,7 +70,10 @@ class SeamEditing(QObject):
         result, plan, name = self._controller.result, self._controller.plan, self._controller.seam
         if result is None or plan is None or self.seam(plan.block, name) is None:
             return np.empty((0, 3))
-        found = seam_handles(result.drawing, result.pattern.garment.block, name)
+        try:
+            found = handles_of(result.drawing, result.pattern.garment.block, name)
+        except (UserError, KeyError):  # of a seam that the shown pieces do not have yet
+            return np.empty((0, 3))
         return np.array([place for _, place in found]).reshape(-1, 3)
 
     def _move(self, number_: int, place: Points) -> None:
@@ -121,6 +125,15 @@ class SeamEditing(QObject):
         if seam is not None:
             self._edit_seam(seam, tr("{seam} reset").format(seam=seam_title(name)))
 
+    def set_apart(self, apart: bool) -> None:
+        """Give each side of the selected seam places of its own, or those of the left side to both."""
+        plan, name = self._controller.plan, self._controller.seam
+        if plan is None or self.seam(plan.block, name) is None:
+            return
+        text = tr("{seam}: each side its own") if apart else tr("{seam}: both sides alike")
+        block = with_own_sides(plan.block, name, apart)
+        self._controller.change(text.format(seam=seam_title(plan.block.seam(name).name)), block=block)
+
     def set_allowance(self, mm: float | None) -> None:
         """Set the allowance of the selected seam [mm], None for that of the pattern."""
         plan, name = self._controller.plan, self._controller.seam
@@ -133,8 +146,7 @@ class SeamEditing(QObject):
     def _edit_seam(self, seam: Seam, text: str) -> None:
         plan = self._controller.plan
         assert plan is not None
-        seams = tuple(seam if each.name == seam.name else each for each in plan.block.seams)
-        self._controller.change(text, block=replace(plan.block, seams=seams))
+        self._controller.change(text, block=with_seam(plan.block, seam))
 
     # -- the selected piece
 

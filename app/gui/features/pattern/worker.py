@@ -15,6 +15,7 @@ from core.document.garment_pattern import GarmentPattern
 from core.pattern.cloth_library import cloths_of
 from core.pattern.garment import CutGarment, Pattern, cut_garment, worn_skin
 from core.pattern.places import BodyPlaces
+from core.pattern.recut import recut
 from core.pattern.seam_curves import SeamDrawing
 from core.pattern.seam_matching import Matched
 from core.pipeline.frame import Frame
@@ -55,6 +56,7 @@ class PatternWorker(QObject):
         self._parts: tuple[object, ...] = ()  # that it draws by
         self._garment: CutGarment | None = None
         self._matched: Matched | None = None
+        self._is_recut = False  # of a garment of which only some panels were cut again
         self._turn = threading.Lock()  # a job that was cancelled ends only when its pattern is made
 
     @property
@@ -97,7 +99,7 @@ class PatternWorker(QObject):
         """Make a pattern, in a thread of its own."""
         with self._turn:
             drawing = self._drawing_of(request.frame)
-            garment = self._garment_of(drawing, request.plan)
+            garment = self._garment_of(drawing, request)
             cloths = cloths_of(request.plan)
             former = None if request.final else self._matched
             pattern = garment.flat(worn_skin(request.frame.stages, request.frame.vertices), cloths, former)
@@ -115,9 +117,17 @@ class PatternWorker(QObject):
             self._garment = self._matched = None
         return self._drawing
 
-    def _garment_of(self, drawing: SeamDrawing, plan: GarmentPattern) -> CutGarment:
-        known = self._garment
-        if known is None or known.block != plan.block or known.is_bridged != plan.bridged:
-            self._garment, self._matched = cut_garment(drawing, plan.block, plan.bridged), None
-        assert self._garment is not None
-        return self._garment
+    def _garment_of(self, drawing: SeamDrawing, request: PatternRequest) -> CutGarment:
+        """Return the cut garment; one that is not final may be cut again only where its block has changed."""
+        plan, known = request.plan, self._garment
+        if known is None or known.is_bridged != plan.bridged:
+            made = cut_garment(drawing, plan.block, plan.bridged)
+        elif known.block == plan.block and not (request.final and self._is_recut):
+            return known
+        elif request.final:
+            made = cut_garment(drawing, plan.block, plan.bridged)
+        else:
+            made = recut(known, drawing, plan.block)
+        self._is_recut = not request.final and known is not None
+        self._garment, self._matched = made, None
+        return made
