@@ -65,9 +65,7 @@ def _text(value: Parameter, design: Design | None) -> str:
         case ElasticName(name):
             text = elastic_title(name)
         case PieceName() | SeamName():
-            kind = kind_of(value.text)
-            title = tr_context(value.context, kind)
-            text = value.text if title == kind else _with_side(title, value.text)
+            text = _sided(value, value.text)
         case Name():
             text = tr_context(value.context, str(value))
         case int():
@@ -151,8 +149,17 @@ def side_of(name: str) -> str:
 
 def sided_title(name: PieceName | SeamName) -> str:
     """Return the title of a piece or seam of a block, with its side; one of the user's own keeps its name."""
-    title = _with_side(tr_context(name.context, kind_of(name.text)), name.text)
+    title = _sided(name)
     return title[:1].upper() + title[1:]
+
+
+def _sided(name: PieceName | SeamName, untranslated: str = "") -> str:
+    """Return what a piece or seam is called here, or a text in place of the English name, if there is one."""
+    kind, side = kind_of(name.text), side_of(name.text)
+    title = tr_context(name.context, kind)
+    if title == kind and untranslated:
+        return untranslated
+    return tr("{name}, {side}").format(name=title, side=side) if side else title
 
 
 def _with_side(title: str, name: str) -> str:

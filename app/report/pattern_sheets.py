@@ -11,11 +11,12 @@ from PySide6.QtGui import QPainter
 from shapely.geometry.base import BaseGeometry
 
 from app.i18n.catalog import tr, using_language
-from app.presenters.messages import render
+from app.presenters.messages import render, sided_title
 from app.rendering.palette import LIGHT
 from app.report.painter import PagePainter, elide, line_height, text_width, wrap
 from core.export.report_data import Heading
 from core.geometry.mesh import Floats
+from core.messages import PieceName
 from core.pattern.allowance import CutPiece
 from core.pattern.annotation import (
     STRETCH,
@@ -281,7 +282,8 @@ class _Overview:
         """Write the names of pieces into the small picture, and return what they take of the page."""
         boxes = []
         for each, note in zip(self._sheets.tiling.layout.pieces, self._sheets.notes, strict=True):
-            name, (x, y) = each.piece.name, drawing.on_page(note.centre[None])[0]
+            name = sided_title(PieceName(each.piece.name))
+            x, y = drawing.on_page(note.centre[None])[0]
             self._paper.letters(x, y + 1.0, name, 2.6)
             half = 0.5 * text_width(name, "body")
             boxes.append(shapely.box(x - half, y - 2.0, x + half, y + 2.0))

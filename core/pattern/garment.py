@@ -150,6 +150,13 @@ class Pattern:
 
         It must lie flat, its cloth take up its strain on 95 % of its area, and its seams agree.
         """
+        return self._problems[flat.panel.name]
+
+    @cached_property
+    def _problems(self) -> Mapping[str, Message | None]:
+        return {flat.panel.name: self._problem_of(flat) for flat in self.flats}
+
+    def _problem_of(self, flat: FlatPanel) -> Message | None:
         cloth, within = self.cloths[flat.panel.cloth], self.strains[flat.panel.name].within
         if flat.is_folded:
             return Message("Cannot be laid flat without a fold.")

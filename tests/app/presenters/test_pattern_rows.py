@@ -51,9 +51,11 @@ def test_seams_have_the_lengths_of_both_sides_before_and_after(cup: Pattern) -> 
 
 def test_titles_are_japanese_in_rows_and_on_paper(cup: Pattern) -> None:
     with using_language("ja"):
-        assert next(row.title for row in piece_rows(cup) if row.name == "lower cup left") == "下カップ、左"
+        notes = [row.note for row in seam_rows(cup) if row.name == "cup seam left"]
+        assert notes[0].startswith("縫い目を合わせる前は下カップ（左）が上カップ（左）より")
+        assert next(row.title for row in piece_rows(cup) if row.name == "lower cup left") == "下カップ（左）"
         titles = {row.name: row.title for row in seam_rows(cup)}
-        assert titles["cup seam left"] == "カップ縫い目、左"
+        assert titles["cup seam left"] == "カップ縫い目（左）"
         assert block_title(cup.garment.block).startswith("二枚はぎカップ")
         words = {piece_words(piece, render)[0].partition("（")[0] for piece in cup.pieces()}
         assert words == {"上カップ", "下カップ", "前中心布", "土台", "脇布"}

@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 from whole_trunk import trunk_stages
 
+from core.control_mesh.template import read_template
 from core.document.garment_pattern import GarmentPattern
+from core.document.lower_trunk import lower_line_names
 from core.garment.cut_list import CutList, CutRow
 from core.geometry.plane_sections import arc_length
 from core.pattern.annotation import piece_words
-from core.pattern.block_library import find_block
+from core.pattern.block_library import built_in_blocks, find_block
 from core.pattern.edge_elastics import edge_elastics, lines_on_edges
 from core.pattern.garment import Pattern, pattern_of
 from core.pattern.piece import EdgeElastic, SideKey
@@ -38,6 +40,14 @@ def on_body(pattern: Pattern, key: SideKey, share: float) -> np.ndarray:
 def brief() -> Pattern:
     stages = trunk_stages()
     return pattern_of(stages, stages.body.mesh.vertices, GarmentPattern(find_block("high-waist-brief")))
+
+
+def test_lines_of_shipped_blocks_are_lines_of_the_templates() -> None:
+    known = {*read_template("168").paths, *lower_line_names()}
+    lines = [seam.line for block in built_in_blocks() for seam in block.seams if seam.line]
+    assert len(lines) >= 8
+    for line in lines:
+        assert line in known or {f"{line}-left", f"{line}-right"} <= known, line
 
 
 def test_a_waistband_goes_all_round_with_marks_where_no_seam_is(brief: Pattern) -> None:
