@@ -14,6 +14,7 @@ from app.rendering.band import band_width
 from core import __version__
 from core.document.garment_pattern import GarmentPattern
 from core.errors import UserError
+from core.export.avatar import seam_lines, write_avatar
 from core.export.pattern_csv import write_pieces, write_seams
 from core.export.pattern_data import pattern_values
 from core.export.pattern_dxf import write_pattern_dxf
@@ -27,7 +28,7 @@ from core.geometry.mesh import Points
 from core.messages import Message
 from core.pattern.allowance import CutPiece, cut_piece
 from core.pattern.edge_elastics import edge_elastics, lines_on_edges
-from core.pattern.garment import Pattern, pattern_of
+from core.pattern.garment import Pattern, pattern_of, worn_skin
 from core.pattern.layout import PAPERS, Tiling, lay_out, lay_out_on_tiles, whole_sheet
 from core.pattern.piece import EdgeElastic, Piece, SideKey
 from core.pipeline.build import Stages
@@ -48,6 +49,8 @@ ENDINGS = {
     "pieces": ".csv",
     "seams": ".csv",
     "json": ".json",
+    "obj": ".obj",
+    "glb": ".glb",
 }
 """Kinds of files and the endings of their names."""
 
@@ -56,7 +59,8 @@ ENDINGS = {
 class CutPattern:
     """A pattern with the ``pieces`` and ``strips`` to cut, and the ``elastics`` of its edges.
 
-    ``uncut`` are lines of which no strip can be cut.
+    ``uncut`` are lines of which no strip can be cut; ``worn`` (n, 3) [mm] is the skin of the body ``stages``
+    as it is reshaped, without noise.
     """
 
     plan: GarmentPattern
@@ -65,14 +69,20 @@ class CutPattern:
     pieces: tuple[Piece, ...]
     strips: tuple[Piece, ...]
     uncut: tuple[str, ...]
+    stages: Stages
+    worn: Points
 
     def shapes(self) -> tuple[CutPiece, ...]:
         """Return all pieces and strips with their allowances. Raises PatternError."""
         return tuple(cut_piece(piece) for piece in (*self.pieces, *self.strips))
 
 
-def cut_pattern(pattern: Pattern, plan: GarmentPattern, shown: ShownState, *, strips: bool) -> CutPattern:
+def cut_pattern(
+    pattern: Pattern, plan: GarmentPattern, shown: ShownState, vertices: Points, *, strips: bool
+) -> CutPattern:
     """Return what is cut of a pattern of a shown design, with strips of its lines if they are wanted.
+
+    ``vertices`` (n, 3) [mm] are those of the reshaped body.
 
     Raises LineError for control points that are not a valid shape.
     """
@@ -85,7 +95,8 @@ def cut_pattern(pattern: Pattern, plan: GarmentPattern, shown: ShownState, *, st
     on_edges = lines_on_edges(pattern, cuts)
     straps = strip_pieces(shown, cuts, on_edges, titles, widths) if strips else ()
     uncut = uncut_strips(cuts, on_edges) if strips else ()
-    return CutPattern(plan, pattern, elastics, pattern.pieces(plan.allowance, elastics), straps, uncut)
+    pieces, worn = pattern.pieces(plan.allowance, elastics), worn_skin(shown.stages, vertices)
+    return CutPattern(plan, pattern, elastics, pieces, straps, uncut, shown.stages, worn)
 
 
 def pattern_or_reason(stages: Stages, vertices: Points) -> Pattern | Message | None:
@@ -116,6 +127,9 @@ def write_pattern(path: Path, kind: str, cut: CutPattern, heading: Heading, foun
     if kind == "json":
         values = {**pattern_values(cut.pattern, cut.elastics), **found, "versions": {"busk": __version__}}
         write_text(path, json.dumps(values, indent=1, ensure_ascii=False) + "\n")
+    elif kind in ("obj", "glb"):
+        skin = cut.stages.body.smoothed
+        write_avatar(path, skin.moved(cut.worn), seam_lines(cut.pattern.garment.curves, skin, cut.worn))
     elif kind in ("pieces", "seams"):
         (write_pieces if kind == "pieces" else write_seams)(path, (*cut.pieces, *cut.strips))
     else:
@@ -142,6 +156,11 @@ def kind_titles() -> dict[str, tuple[str, str]]:
         "pieces": (tr("List of pieces (CSV)"), tr("Name, cloth, number, area and allowances of each piece")),
         "seams": (tr("List of seams (CSV)"), tr("Both lengths of each seam")),
         "json": (tr("Values (JSON)"), tr("Pieces, seams, strain and the verdict for other programs")),
+        "obj": (
+            tr("Avatar (OBJ)"),
+            tr("The reshaped body with its seams as named groups, for CLO and VStitcher"),
+        ),
+        "glb": (tr("Avatar (GLB)"), tr("The reshaped body with its seams as named lines")),
     }
 
 

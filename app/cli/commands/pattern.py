@@ -19,14 +19,13 @@ from core.document.design import Design
 from core.document.garment_pattern import GarmentPattern
 from core.document.lower_trunk import LowerTrunk
 from core.errors import PatternError
-from core.export.avatar import seam_lines, write_avatar
 from core.export.report_data import Heading
 from core.messages import Message
 from core.pattern.annotation import elastic_words
 from core.pattern.block_library import built_in_blocks, find_block, read_block, write_block
 from core.pattern.cloth_csv import read_cloth, write_template
 from core.pattern.cloth_library import ALL_PIECES, built_in, find_cloth, with_cloth
-from core.pattern.garment import pattern_of, worn_skin
+from core.pattern.garment import pattern_of
 from core.pattern.layout import PAPERS, Tiling
 
 _FILES = ("dxf", "svg", "pdf", "plt", "pieces", "seams", "json", "save_block", "avatar")
@@ -87,7 +86,7 @@ def run(options: Namespace) -> int:
     solved = solve_design(design, options.line or [], options.elastic or [], bare=True)
     shown = solved.solution
     pattern = pattern_of(shown.stages, shown.body.vertices, plan)
-    cut = cut_pattern(pattern, plan, shown, strips=options.strips)
+    cut = cut_pattern(pattern, plan, shown, shown.body.vertices, strips=options.strips)
     lines = [*solved.verdict, "", *_text(cut), *_write(cut, solved, options)]
     return finish("\n".join(lines), solved.converged and cut.pattern.fits_cloths, solved.warnings)
 
@@ -167,17 +166,10 @@ def _write(cut: CutPattern, solved: SolvedDesign, options: Namespace) -> Iterato
         elif kind == "save_block":
             write_block(path, cut.plan.block)
         elif kind == "avatar":
-            _write_avatar(path, cut, solved)
+            write_pattern(path, "obj", cut, heading, found)  # or GLB, by its suffix
         else:
             write_pattern(path, f"dxf-{options.dxf_standard}" if kind == "dxf" else kind, cut, heading, found)
         yield f"written to {path}"
-
-
-def _write_avatar(path: Path, cut: CutPattern, solved: SolvedDesign) -> None:
-    stages = solved.solution.stages
-    worn = worn_skin(stages, solved.solution.body.vertices)
-    skin = stages.body.smoothed
-    write_avatar(path, skin.moved(worn), seam_lines(cut.pattern.garment.curves, skin, worn))
 
 
 def _write_pdf(path: Path, tiling: Tiling, heading: Heading) -> None:

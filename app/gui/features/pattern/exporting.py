@@ -78,7 +78,8 @@ class PatternExport(QObject):
             return
         try:
             strips = dialog.strips.isChecked()
-            self._cut = cut_pattern(result.pattern, plan, result.request.frame, strips=strips)
+            frame = result.request.frame
+            self._cut = cut_pattern(result.pattern, plan, frame, frame.vertices, strips=strips)
             tiling = tiling_of(self._cut, dialog.paper)
         except UserError as error:
             dialog.show_pages(None, render(error.text))

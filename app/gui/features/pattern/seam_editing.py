@@ -96,8 +96,9 @@ class SeamEditing(QObject):
         trial, self.trial = self.trial, None
         self._controller.carrying_changed.emit()
         if trial is not None:
-            text = tr("{seam} moved").format(seam=seam_title(self._controller.seam))
-            self._controller.change(text, block=trial.block)
+            seam = trial.block.seam(self._controller.seam)
+            title = seam_title(self._controller.seam if seam.right else seam.name)
+            self._controller.change(tr("{seam} moved").format(seam=title), block=trial.block)
 
     def _cancel(self) -> None:
         self.trial = None
