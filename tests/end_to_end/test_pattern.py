@@ -1,0 +1,200 @@
+"""Pattern pieces in the window: a block is chosen, its seams and cloths are edited, and pieces are exported."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pdf_tools import Pdf
+from PySide6.QtCore import QPointF, Qt
+from PySide6.QtTest import QTest
+from window_tools import Script, drag, run_main, run_undrawn, settled
+
+from app.gui.features.pattern import exporting
+from app.gui.main_window import MainWindow
+from core.document.storage.project_file import open_project
+from core.pattern.block_library import find_block, read_block
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+
+def current(window: MainWindow) -> Callable[[], bool]:
+    """The pieces are those of the present design."""
+    return window.pattern_controller.is_current
+
+
+def chosen(window: MainWindow, block: str) -> Script:
+    yield settled(window)
+    window.navigation.show_step("pattern")
+    window.pattern.block_doors[block].click()
+    yield current(window)
+
+
+def lengths(window: MainWindow, seam: str) -> list[float]:
+    """The lengths of the pieces along a seam [mm]."""
+    result = window.pattern_controller.result
+    assert result is not None
+    return [fit.together[0] for fit in result.pattern.matched.fits if fit.seam.name == seam]
+
+
+def test_a_block_is_chosen_edited_and_every_edit_is_undone_by_name(mannequin: Path) -> None:
+    def script(window: MainWindow) -> Script:
+        panel, view, steps = window.pattern, window.pieces, window.session.undo_stack
+        yield settled(window)
+        window.navigation.show_step("pattern")
+        assert view.isVisible()
+        assert not window.strip.isVisible(), "the pieces have its room"
+        assert panel.currentIndex() == 0, "there is no block yet"
+        yield from chosen(window, "two-part-cup")
+        controller = window.pattern_controller
+        assert [row.row.name for row in panel.list.buttons][:2] == ["upper cup left", "upper cup right"]
+        assert len(controller.result.pattern.flats) == 9
+        assert controller.layer.seams is not None, "the seams are drawn on the body"
+        assert panel.export.isEnabled()
+        panel.list.buttons[2].click()
+        assert view.piece == "lower cup left"
+        assert panel.piece_card.isVisible()
+        controller.editing.choose_cloth("power net")
+        yield current(window)
+        cloths = {flat.panel.name: flat.panel.cloth for flat in controller.result.pattern.flats}
+        assert cloths["lower cup left"] == cloths["lower cup right"] == "power net"
+        assert steps.undoText() == "Cloth of Lower cup: Power net"
+        panel.allowance.entered.emit(10.0)
+        assert steps.undoText() == "Seam allowance 10.0 mm"
+        controller.select_seam("cup seam left")
+        assert not panel.piece_card.isVisible()
+        panel.seam_card.allowance_changed.emit(4.0)
+        assert window.session.design.pattern.block.seam("cup seam").allowance == 4.0
+        steps.undo()
+        steps.undo()
+        steps.undo()
+        assert window.session.design.pattern.allowance == 7.0
+        yield current(window)
+        assert {flat.panel.cloth for flat in controller.result.pattern.flats} >= {"cup tricot"}
+        steps.undo()
+        assert panel.currentIndex() == 0, "without a block there is the choice again"
+        assert controller.result is None
+
+    run_undrawn([str(mannequin)], script)
+
+
+def test_a_seam_is_dragged_by_its_point_on_the_body(mannequin: Path) -> None:
+    def script(window: MainWindow) -> Script:
+        yield from chosen(window, "two-part-cup")
+        controller, layer, steps = (
+            window.pattern_controller,
+            window.pattern_controller.layer,
+            window.session.undo_stack,
+        )
+        controller.select_seam("cup seam left")
+        before = lengths(window, "cup seam left")
+        handles = controller.editing.handles()
+        assert len(handles) == 3, "two ends and the bust point"
+        spot = layer._spots(window.view.viewport.scene.carried_points(handles))[1]
+        start, end = QPointF(*spot), QPointF(spot[0], spot[1] + 9.0)
+        assert layer.seam_at(start) == "cup seam left"
+        canvas = layer._canvas
+        QTest.mousePress(canvas, Qt.MouseButton.LeftButton, pos=start.toPoint())
+        QTest.mouseMove(canvas, end.toPoint())
+        assert controller.editing.trial is not None, "it is tried while it is held"
+        assert steps.undoText() == "Pattern: Two-part cup, bridge, cradle and wings"
+        QTest.mouseRelease(canvas, Qt.MouseButton.LeftButton, pos=end.toPoint())
+        yield current(window)
+        assert steps.undoText() == "Cup seam moved"
+        words = window.session.design.pattern.block.seam("cup seam").places
+        assert words[0] == "root 285"
+        assert words[1].startswith("root 1"), "below the bust point, told by the clock"
+        after = lengths(window, "cup seam left")
+        assert abs(after[0] - before[0]) > 0.2
+        layer.moved.emit(1, handles[1])
+        layer.cancelled.emit()
+        assert controller.editing.trial is None
+        assert window.session.design.pattern.block.seam("cup seam").places == words
+        yield current(window)
+        assert lengths(window, "cup seam left") == pytest.approx(after, abs=1e-6)
+        window.pattern.seam_card.reset.click()
+        assert window.session.design.pattern.block == find_block("two-part-cup")
+        window.pattern.seam_card.knob.setValue(100)
+        assert " | " in window.pattern.seam_card.so_far.text(), "both lengths so far"
+
+    run_main([str(mannequin)], script)
+
+
+def test_the_pieces_follow_a_line_and_are_not_exported_meanwhile(mannequin: Path) -> None:
+    def script(window: MainWindow) -> Script:
+        yield from chosen(window, "one-part-cup")
+        controller, panel = window.pattern_controller, window.pattern
+        former = controller.result
+        panel.lines_door.click()
+        assert window.inspector.panel() is window.lines_page
+        assert window.pieces.isVisible(), "the pieces stay beside the body"
+        drag(window, "mid-bust", -12)
+        assert not controller.is_current()
+        assert not panel.export.isEnabled()
+        yield settled(window)
+        yield current(window)
+        assert controller.result is not former
+        moved = np.abs(controller.result.pattern.places[0] - former.pattern.places[0]).max()
+        assert moved > 0.5, "the panel rides on the skin"
+        assert panel.export.isEnabled()
+
+    run_undrawn([str(mannequin)], script)
+
+
+def test_pieces_are_exported_with_a_preview_and_kept_in_the_project(
+    mannequin: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    target: list[Path] = []
+    monkeypatch.setattr(exporting, "ask_save", lambda *_: str(target[-1]))
+    monkeypatch.setattr(exporting, "ask_file", lambda *_: str(target[-1]))
+
+    def script(window: MainWindow) -> Script:
+        yield from chosen(window, "one-part-cup")
+        controller = window.pattern_controller
+        for kind, name in (("pdf", "a.pdf"), ("dxf-aama", "a.dxf"), ("json", "a.json"), ("obj", "a.obj")):
+            window.pattern.export.click()
+            dialog = controller.files.dialog
+            assert dialog is not None
+            assert dialog.preview.count > 1, "an overview, and tiles"
+            dialog.kinds[kind].click()
+            target.append(tmp_path / name)
+            dialog.save.click()
+            assert target[-1].stat().st_size > 500
+        assert Pdf(tmp_path / "a.pdf").count > 1
+        told = json.loads((tmp_path / "a.json").read_text())
+        assert [piece["name"] for piece in told["pieces"]] == ["cup", "cup"]
+        target.append(tmp_path / "mine.json")
+        controller.files.save_block()
+        assert read_block(target[-1]).seams == find_block("one-part-cup").seams
+        controller.files.open_block()
+        assert window.session.design.pattern.block.name == "mine"
+        target.append(tmp_path / "broken.json")
+        target[-1].write_text("{}")
+        controller.files.open_block()
+        assert window.session.design.pattern.block.name == "mine", "what cannot be used changes nothing"
+        notice = window.notices.notice()
+        assert notice is not None
+        assert "broken" in str(notice.sentence)
+        window.session.save(str(tmp_path / "kept.busk"), None)
+        assert window.session.finish_saving()
+        assert open_project(str(tmp_path / "kept.busk")).design.pattern == window.session.design.pattern
+
+    run_undrawn([str(mannequin)], script)
+
+
+def test_a_block_that_the_scan_has_no_room_for_says_why(mannequin: Path) -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        controller = window.pattern_controller
+        window.navigation.show_step("pattern")
+        before = window.session.frame
+        window.pattern.block_doors["brief"].click()
+        yield lambda: bool(controller._refused) or window.notices.notice() is not None
+        assert controller.result is None
+        assert not window.pattern.export.isEnabled()
+        assert window.session.frame.stages.body is before.stages.body, "the body stays"
+
+    run_undrawn([str(mannequin)], script)
