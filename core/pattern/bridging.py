@@ -171,7 +171,7 @@ def _taut(
     """Return how far a taut cloth is off the skin, (n,) [mm], and in which directions, (n, 3)."""
     ways = _smoothed(weights, places, faces, normals)
     stiff = _along(weights, ways)
-    force = np.einsum("nx,nx->n", ways, _without_edges(weights @ places, faces, normals))
+    force = np.einsum("nx,nx->n", ways, _without_edges(weights @ places, places, faces, normals))
     return _lifted(stiff, force, may), ways
 
 
@@ -220,14 +220,16 @@ def _edges(faces: Faces) -> Indices:
     return np.concatenate([np.stack([at, np.roll(at, -1)], axis=1) for at in boundary_loops(faces)])
 
 
-def _without_edges(force: Points, faces: Faces, normals: Points) -> Points:
-    """Return the forces of a membrane, (n, 3), at its edges only those towards the skin or off it.
+def _without_edges(force: Points, places: Points, faces: Faces, normals: Points) -> Points:
+    """Return the forces of a membrane, (n, 3), without what draws its edges aside within the skin.
 
     An edge is held by what it is sewn to: without that the cloth would draw back from it, and off the skin.
     """
     force = force.copy()
     for loop in boundary_loops(faces):
-        force[loop] = np.einsum("nx,nx->n", force[loop], normals[loop])[:, None] * normals[loop]
+        step = unit(np.roll(places[loop], -1, axis=0) - places[loop])
+        aside = unit(np.cross(step + np.roll(step, 1, axis=0), normals[loop]))
+        force[loop] -= np.einsum("nx,nx->n", force[loop], aside)[:, None] * aside
     return force
 
 
