@@ -16,6 +16,7 @@ import numpy as np
 from app.cli.design import design_of
 from app.cli.options import add_lines, add_scan
 from app.cli.output import DONE, finish, table_lines
+from app.cli.pattern_advice import dart_lines, remedy_lines
 from app.cli.solved_design import SolvedDesign, solve_design
 from core import __version__
 from core.document.garment_pattern import ALLOWANCE
@@ -51,6 +52,9 @@ def add_options(parser: ArgumentParser) -> None:
     add_scan(parser, required=False)
     add_lines(parser)
     parser.add_argument("--block", metavar="NAME", help="garment block: see --list")
+    parser.add_argument("--dart-chart", metavar="PIECE", help="print where a dart helps: 'cup left'")
+    out = "print ways out for pieces over their limit, each tried: a dart, another cloth, one more seam"
+    parser.add_argument("--ways-out", action="store_true", help=out)
     parser.add_argument("--allowance", type=float, default=ALLOWANCE, metavar="MM", help="seam allowance")
     parser.add_argument("--dxf", metavar="FILE", help="output DXF, one block for each piece")
     parser.add_argument("--dxf-standard", choices=("aama", "astm"), default="aama", help="default: aama")
@@ -83,6 +87,11 @@ def run(options: Namespace) -> int:
     pattern = garment.flat(_worn_skin(solved), {cloth.name: cloth for cloth in built_in()})
     written = _write(pattern, solved, options)
     lines = [*solved.verdict, "", *_text(pattern), *written]
+    stages = solved.solution.stages
+    if options.dart_chart:
+        lines += ["", *dart_lines(pattern, stages, options.dart_chart)]
+    if options.ways_out:
+        lines += ["", *remedy_lines(pattern, stages, _worn_skin(solved))]
     return finish("\n".join(lines), solved.converged and pattern.fits_cloths, solved.warnings)
 
 
