@@ -79,12 +79,12 @@ def pieces(scan: Scan, block: Block) -> Iterator[str]:
     strains = ", ".join(f"{name} {worst[name]:.1f} of {limits[name]:g}{over[name]}" for name in worst)
     fits = found.matched.fits
     sewn = max((abs(fit.together[0] - fit.together[1]) for fit in fits), default=0.0)
-    alone = max(fits, key=lambda fit: abs(fit.misfit))
+    off = max(fits, key=lambda fit: abs(fit.misfit), default=None)
     rest = scan.rest
     lost = [1.0 - _area(panel.places(rest), panel.faces) / panel.covers for panel in found.garment.panels]
     faults = ", ".join(_faults(found)) or "none"
-    off = f"{alone.seam.name} {100.0 * alone.misfit:.1f} %"
-    yield f"{faults} | {100.0 * max(lost):.2f} % | {sewn:.5f} mm | {off}"
+    alone = "no seam" if off is None else f"{off.seam.name} {100.0 * off.misfit:.1f} %"
+    yield f"{faults} | {100.0 * max(lost):.2f} % | {sewn:.5f} mm | {alone}"
     yield f"  {'fits' if found.fits_cloths else 'refused'}: {strains}"
 
 

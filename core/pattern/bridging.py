@@ -29,6 +29,7 @@ LEAST = 0.2
 
 _ROUNDS = 60  # of finding out where the cloth lies on the skin; most hollows take ten
 _SHORTEST = 0.5  # steps of a cut skin may be shorter, but count as so long [mm]
+_MISS = 1.0  # an edge off the skin is in the plane of three places on it within this [mm]
 _REACH = 15.0  # of the place within the cloth that an edge is told from [mm]
 _SMOOTHED = 30.0  # over which the directions change in which cloth may leave the skin, across it [mm]
 
@@ -94,8 +95,9 @@ def _spread(
     loops = boundary_loops(faces)
     on_edge = np.zeros(len(places), dtype=bool)
     on_edge[np.concatenate(loops)] = True
-    inner = off & ~on_edge
+    off = off.copy()
     told = list(_edge_shares(loops, lifted, off, ~off & ~on_edge))
+    inner = off & ~on_edge
     rows = np.repeat([row for row, _, _ in told], 3).astype(np.int64)
     columns = np.array([column for _, own, _ in told for column in own], dtype=np.int64)
     values = np.array([share for _, _, own in told for share in own])
@@ -120,23 +122,34 @@ def _edge_shares(
 ) -> Iterator[tuple[int, Indices, Floats]]:
     """Yield each place of an edge that is off the skin, three places on the skin, and its shares of them.
 
-    They are where the edge leaves the skin, where it comes back, and one ``inside`` the cloth (n,).
+    They are where the edge leaves the skin, where it comes back, and one ``inside`` the cloth (n,). A place
+    that is not in their plane is put on the skin, and no longer ``off``.
     """
     within = np.flatnonzero(inside)
     for loop in loops:
         rests = np.flatnonzero(~off[loop])
-        for first, last in zip(rests, [*rests[1:], rests[:1].sum() + len(loop)], strict=True):
+        ends = [*rests[1:], rests[:1].sum() + len(loop)]
+        runs = [(int(first), int(last)) for first, last in zip(rests, ends, strict=True)]
+        while runs:
+            first, last = runs.pop()
             if last - first < 2:
                 continue
             free = loop[np.arange(first + 1, last) % len(loop)]
-            one, two = loop[first], loop[last % len(loop)]
+            one, two = loop[first % len(loop)], loop[last % len(loop)]
             chord = lifted[two] - lifted[one]
             reach = max(float(np.linalg.norm(chord)), _REACH)
             away = np.linalg.norm(lifted[within] - 0.5 * (lifted[one] + lifted[two]), axis=1)
             third = within[np.abs(away - reach).argmin()]
             frame = np.stack([chord, lifted[third] - lifted[one]], axis=1)
-            along, aside = np.linalg.lstsq(frame, (lifted[free] - lifted[one]).T, rcond=1e-3)[0]
-            for place, b, c in zip(free.tolist(), along, aside, strict=True):
+            from_one = (lifted[free] - lifted[one]).T
+            shares = np.linalg.lstsq(frame, from_one, rcond=1e-3)[0]
+            miss = np.linalg.norm(frame @ shares - from_one, axis=0)
+            if miss.max() > _MISS:
+                middle = first + 1 + int(miss.argmax())
+                off[loop[middle % len(loop)]] = False
+                runs += [(first, middle), (middle, last)]
+                continue
+            for place, (b, c) in zip(free.tolist(), shares.T, strict=True):
                 yield place, np.array([one, two, third]), np.array([1.0 - b - c, b, c])
 
 
@@ -158,7 +171,7 @@ def _taut(
     """Return how far a taut cloth is off the skin, (n,) [mm], and in which directions, (n, 3)."""
     ways = _smoothed(weights, places, faces, normals)
     stiff = _along(weights, ways)
-    force = np.einsum("nx,nx->n", ways, _without_edges(weights @ places, faces, normals))
+    force = np.einsum("nx,nx->n", ways, _without_edges(weights @ places, places, faces, normals))
     return _lifted(stiff, force, may), ways
 
 
@@ -207,14 +220,16 @@ def _edges(faces: Faces) -> Indices:
     return np.concatenate([np.stack([at, np.roll(at, -1)], axis=1) for at in boundary_loops(faces)])
 
 
-def _without_edges(force: Points, faces: Faces, normals: Points) -> Points:
-    """Return the forces of a membrane, (n, 3), at its edges only those towards the skin or off it.
+def _without_edges(force: Points, places: Points, faces: Faces, normals: Points) -> Points:
+    """Return the forces of a membrane, (n, 3), without what draws its edges aside within the skin.
 
     An edge is held by what it is sewn to: without that the cloth would draw back from it, and off the skin.
     """
     force = force.copy()
     for loop in boundary_loops(faces):
-        force[loop] = np.einsum("nx,nx->n", force[loop], normals[loop])[:, None] * normals[loop]
+        step = unit(np.roll(places[loop], -1, axis=0) - places[loop])
+        aside = unit(np.cross(step + np.roll(step, 1, axis=0), normals[loop]))
+        force[loop] -= np.einsum("nx,nx->n", force[loop], aside)[:, None] * aside
     return force
 
 

@@ -74,9 +74,15 @@ def remedies(
         if remedy is not None and (remedy.fits or remedy.left < before):
             found.append(remedy)
     progress("remedies", 1.0)
-    found.sort(key=lambda each: (not each.fits, each.others, _ORDER.index(each.kind), each.left / each.limit))
+    found.sort(key=_rank)
     cloths = [each for each in found if each.kind == CLOTH][:MOST_CLOTHS]
     return tuple(each for each in found if each.kind != CLOTH or each in cloths)
+
+
+def _rank(remedy: Remedy) -> tuple[bool, int, int, float]:
+    """Order what fits before what does not, and cloths by how little they stretch further."""
+    last = remedy.limit if remedy.kind == CLOTH else remedy.left
+    return not remedy.fits, remedy.others, _ORDER.index(remedy.kind), last
 
 
 def _tried(change: _Change, pattern: Pattern, drawing: SeamDrawing, vertices: Points) -> Remedy | None:

@@ -12,6 +12,7 @@ from pathlib import Path
 from app.cli.design import design_of
 from app.cli.options import add_lines, add_scan
 from app.cli.output import DONE, finish, table_lines
+from app.cli.pattern_advice import dart_lines, remedy_lines
 from app.cli.solved_design import SolvedDesign, solve_design
 from app.presenters.pattern import piece_rows, seam_rows
 from app.presenters.pattern_files import SHEET, CutPattern, cut_pattern, tiling_of, write_pattern
@@ -25,7 +26,7 @@ from core.pattern.annotation import elastic_words
 from core.pattern.block_library import built_in_blocks, find_block, read_block, write_block
 from core.pattern.cloth_csv import read_cloth, write_template
 from core.pattern.cloth_library import ALL_PIECES, built_in, find_cloth, with_cloth
-from core.pattern.garment import pattern_of
+from core.pattern.garment import pattern_of, worn_skin
 from core.pattern.layout import PAPERS, Tiling
 
 _FILES = ("dxf", "svg", "pdf", "plt", "pieces", "seams", "json", "save_block", "avatar")
@@ -48,6 +49,9 @@ def add_options(parser: ArgumentParser) -> None:
     parser.add_argument("--cloth", action="append", metavar="PIECE=CLOTH", help=cloth)
     allowance = "allowance of seams without their own (default: that of the project, or 7)"
     parser.add_argument("--allowance", type=float, metavar="MM", help=allowance)
+    parser.add_argument("--dart-chart", metavar="PIECE", help="print where a dart helps: 'cup left'")
+    out = "print ways out for pieces over their limit, each tried: a dart, another cloth, one more seam"
+    parser.add_argument("--ways-out", action="store_true", help=out)
     strips = "add straps and bands of the cut list as pieces, apart from elastics of edges"
     parser.add_argument("--strips", action="store_true", help=strips)
     _add_files(parser)
@@ -88,6 +92,10 @@ def run(options: Namespace) -> int:
     pattern = pattern_of(shown.stages, shown.body.vertices, plan)
     cut = cut_pattern(pattern, plan, shown, shown.body.vertices, strips=options.strips)
     lines = [*solved.verdict, "", *_text(cut), *_write(cut, solved, options)]
+    if options.dart_chart:
+        lines += ["", *dart_lines(pattern, shown.stages, options.dart_chart)]
+    if options.ways_out:
+        lines += ["", *remedy_lines(pattern, shown.stages, worn_skin(shown.stages, shown.body.vertices))]
     return finish("\n".join(lines), solved.converged and cut.pattern.fits_cloths, solved.warnings)
 
 
