@@ -19,6 +19,8 @@ MANNEQUIN = (str(sample_path("mannequin")), *STANDING)
 def test_pieces_and_seams_are_written(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     files = {kind: tmp_path / f"a.{kind}" for kind in ("dxf", "svg", "plt", "pieces", "seams", "json")}
     options = [text for kind, path in files.items() for text in (f"--{kind}", str(path))]
+    files["avatar"] = tmp_path / "avatar.obj"
+    options += ["--avatar", str(files["avatar"])]
     worn = ("--line", "mid-bust=99%")
     assert main(["pattern", *MANNEQUIN, *worn, "--block", "three-part-cup", *options]) == 0
     told = capsys.readouterr().out
@@ -33,6 +35,8 @@ def test_pieces_and_seams_are_written(tmp_path: Path, capsys: pytest.CaptureFixt
     names = {block.name for block in drawing.blocks if not block.name.startswith("*")}
     rows = files["pieces"].read_text("utf-8-sig").splitlines()
     assert len(names) == len(rows) - 1
+    groups = {row[2:] for row in files["avatar"].read_text("ascii").splitlines() if row.startswith("g ")}
+    assert {"body", "wire_left", "wire_right"} <= groups
 
 
 def test_a_piece_that_does_not_fit_its_cloth_is_told_and_written(
