@@ -23,7 +23,7 @@ BODY = "body"
 """The name of the body in the file; seams have their own names."""
 
 OBJ_SPACE = FileSpace("mm", "y-up")
-"""An OBJ names no unit. CLO asks for y up, and takes a unit of the file for a millimetre unless scaled."""
+"""An OBJ names no unit. Source: CLO asks for y up (support-connect.clo-set.com, Creating Avatar)."""
 
 
 def seam_lines(curves: Iterable[SeamCurve], skin: Mesh, worn: Points) -> dict[str, Points]:
@@ -41,7 +41,7 @@ def write_avatar(path: str | os.PathLike[str], body: Mesh, seams: Mapping[str, P
     """Write ``body`` [mm] and ``seams`` by name, (k, 3) [mm], as OBJ or GLB by the suffix, y up.
 
     An OBJ is in mm: group ``body`` of triangles, and a group of one line for each seam. A GLB is in m, as
-    the format wants: a mesh and line strips with these names. Raises UserError for another suffix or a path
+    the format wants: a mesh and line segments with these names. Raises UserError for another suffix or a path
     that cannot be written.
     """
     target = Path(path)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from core.geometry.closest_point import barycentric, nearest_faces
-from core.geometry.mesh import Mesh, Points
+from core.geometry.mesh import Flags, Indices, Mesh, Points
 
 _INSIDE = 1e-3
 """A way begins so far from the edges of its triangle [1]: each then leaves it by one."""
@@ -31,15 +31,7 @@ def walk_planes(mesh: Mesh, start: Points, ways: Points, normals: Points, length
     for _ in range(_MOST_STEPS):
         if not len(going):
             break
-        corners = mesh.faces[here[going]]
-        after = np.roll(corners, -1, axis=1)
-        low, high = np.minimum(corners, after), np.maximum(corners, after)
-        ends = mesh.vertices[low] - origin, mesh.vertices[high] - origin
-        at_low, at_high = (np.einsum("ijk,ik->ij", end, normals[going]) for end in ends)
-        crossed = (at_low >= 0.0) != (at_high >= 0.0)
-        share = at_low / np.where(crossed, at_low - at_high, 1.0)
-        places = origin + ends[0] + share[..., None] * (ends[1] - ends[0])
-        key = low * len(mesh.vertices) + high
+        crossed, places, key = _sides(mesh, here[going], origin, normals[going])
         forward = np.einsum("ijk,ik->ij", places - origin, ways[going])
         value = np.where(crossed & (key != entered[going][:, None]), forward, -np.inf)
         row, out = np.arange(len(going)), value.argmax(axis=1)
@@ -54,3 +46,16 @@ def walk_planes(mesh: Mesh, start: Points, ways: Points, normals: Points, length
         here[going] = beyond
         going = going[(beyond >= 0) & (beyond != first) & (gone[going] < length)]
     return [np.array(places) for places in found]
+
+
+def _sides(mesh: Mesh, faces: Indices, origin: Points, normals: Points) -> tuple[Flags, Points, Indices]:
+    """Return which sides of ``faces`` (r,) planes through ``origin`` cross, where, and a number of each."""
+    corners = mesh.faces[faces]
+    after = np.roll(corners, -1, axis=1)
+    low, high = np.minimum(corners, after), np.maximum(corners, after)
+    ends = mesh.vertices[low] - origin, mesh.vertices[high] - origin
+    at_low, at_high = (np.einsum("ijk,ik->ij", end, normals) for end in ends)
+    crossed = (at_low >= 0.0) != (at_high >= 0.0)
+    share = at_low / np.where(crossed, at_low - at_high, 1.0)
+    places = origin + ends[0] + share[..., None] * (ends[1] - ends[0])
+    return crossed, places, low * len(mesh.vertices) + high

@@ -1,4 +1,4 @@
-"""Pattern pieces in the window: a block is chosen, its seams and cloths are edited, and pieces are exported."""
+"""Pattern pieces in the window: a block is chosen, seams and cloths are edited, and pieces are exported."""
 
 from __future__ import annotations
 

@@ -29,6 +29,8 @@ def test_pieces_and_seams_are_written(tmp_path: Path, capsys: pytest.CaptureFixt
     files = {kind: tmp_path / f"a.{kind}" for kind in kinds}
     files["save-block"] = tmp_path / "mine.json"
     options = [text for kind, path in files.items() for text in (f"--{kind}", str(path))]
+    files["avatar"] = tmp_path / "avatar.obj"
+    options += ["--avatar", str(files["avatar"])]
     worn = ["--line", "mid-bust=99%", "--elastic", "mid-bust=picot 8", "--strips"]
     worn += ["--line", "under-bust=98%", "--elastic", "under-bust=plush 12", "--cloth", "wing=stretch lace"]
     assert main(["pattern", *MANNEQUIN, *worn, "--block", "three-part-cup", *options]) == 0
@@ -52,6 +54,8 @@ def test_pieces_and_seams_are_written(tmp_path: Path, capsys: pytest.CaptureFixt
     assert "MID_BUST" in names
     edges = files["seams"].read_text("utf-8-sig").splitlines()
     assert sum("under-bust" in row for row in edges) >= 3, "wing, cradle, bridge"
+    groups = {row[2:] for row in files["avatar"].read_text("ascii").splitlines() if row.startswith("g ")}
+    assert {"body", "wire_left", "wire_right"} <= groups
 
 
 def test_a_piece_that_does_not_fit_its_cloth_is_told_and_written(

@@ -65,8 +65,11 @@ def test_a_glb_has_the_same_in_metres(tmp_path: Path) -> None:
     np.testing.assert_allclose(shape.vertices, y_up(body.vertices) / 1000.0, atol=1e-6)
     assert shape.volume == pytest.approx(body.enclosed_volume() / 1e9, rel=1e-5)
     for name, points in zip(("cup_seam_left", "wire_left"), seams.values(), strict=True):
-        (line,) = scene.geometry[name].discrete
-        np.testing.assert_allclose(line, y_up(points) / 1000.0, atol=1e-6)
+        path = scene.geometry[name]
+        (line,) = path.entities
+        steps = line.discrete(path.vertices).reshape(-1, 2, 3)
+        ends = np.stack([points[:-1], points[1:]], axis=1).reshape(-1, 3)
+        np.testing.assert_allclose(steps.reshape(-1, 3), y_up(ends) / 1000.0, atol=1e-6)
 
 
 def test_seams_move_with_the_skin_that_they_are_drawn_on(built: Callable[[str], Stages]) -> None:

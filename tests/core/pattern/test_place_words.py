@@ -55,7 +55,7 @@ BUST_WORDS = [
 ways = st.tuples(*(st.floats(-12.0, 12.0) for _ in range(3)))
 
 
-@settings(deadline=None, max_examples=40, derandomize=True)
+@settings(deadline=None, max_examples=25, derandomize=True)
 @given(word=st.sampled_from(BUST_WORDS), side=st.sampled_from(["left", "right"]), way=ways)
 def test_a_word_of_the_bust_follows_its_place(
     built: Built, word: str, side: str, way: tuple[float, float, float]
@@ -68,7 +68,7 @@ def test_a_word_of_the_bust_follows_its_place(
     assert away < 4.5, new  # OFF, and half of a degree or a step
 
 
-@settings(deadline=None, max_examples=30, derandomize=True)
+@settings(deadline=None, max_examples=15, derandomize=True)
 @given(
     word=st.sampled_from(["below r5c6", "below r2.8c8", "below r7.6c4", "point buttock"]),
     side=st.sampled_from(["left", "right"]),

@@ -78,7 +78,7 @@ def test_a_garment_cut_again_is_the_one_cut_afresh(
 
 
 def test_kept_panels_keep_the_points_of_their_seams(built: Built) -> None:
-    stages = built("person")
+    stages = built("mannequin")
     block = changed("cup seam", "root 72", "root 84")  # the lower cup is larger: its points are elsewhere
     found = recut(first(stages), drawing(stages), block)
     panels = {panel.name: panel for panel in found.panels}
