@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from app.i18n.catalog import tr_context
 from app.presenters.messages import render, sided_title
 from core.document.block import Block
-from core.messages import BlockName, Message, PieceName, SeamName
+from core.messages import Message, PieceName, SeamName
 from core.pattern.garment import Pattern
 
 
@@ -96,7 +96,7 @@ def seam_rows(pattern: Pattern) -> tuple[SeamRow, ...]:
 
 def block_title(block: Block) -> str:
     """Return what a block is called; one of the user's own keeps its title."""
-    return tr_context(BlockName.context, block.title)
+    return tr_context("block", block.title)
 
 
 def block_about(block: Block) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from app.i18n.catalog import number, tr
-from app.i18n.lengths import length_unit
+from app.i18n.lengths import length_number, length_unit
 from app.presenters.messages import render
 from app.presenters.pattern import PieceRow, SeamRow, block_title, piece_rows, seam_rows
 from app.presenters.pattern_layout import arranged, piece_shapes
@@ -122,7 +122,7 @@ def _seam_head() -> Block:
 
 def _seam(row: SeamRow) -> Block:
     first, second = row.lengths_mm
-    values = number(row.on_body_mm, 1), number(first, 1), number(second, 1)
+    values = length_number(row.on_body_mm), length_number(first), length_number(second)
     return _row(row.title, values, _SEAM, "figure", _ROW)
 
 

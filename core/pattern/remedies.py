@@ -121,7 +121,9 @@ def _cloths(pattern: Pattern, panel: Panel) -> Iterator[_Change]:
     for cloth in sorted(pattern.cloths.values(), key=lambda each: each.limit):
         if cloth.limit > max(own, 0.8 * needed):
             plans = tuple(replace(p, cloth=cloth.name) if p.name == name else p for p in block.panels)
-            message = Message("{cloth}: {left} % of {limit} %.", cloth=ClothName(cloth.title))
+            message = Message(
+                "{cloth}: {left} % of {limit} %.", cloth=ClothName(cloth.title), left="", limit=""
+            )
             yield _Change(CLOTH, message, replace(block, panels=plans), (name,))
 
 
@@ -174,6 +176,8 @@ def _with_dart(block: Block, plan: PanelPlan, dart: Dart, breast: BreastMap) -> 
         "A dart from the {seam} at {clock}\N{DEGREE SIGN}: {left} % of {limit} %.",
         seam=SeamName(_plan_name(dart.seam)),
         clock=f"{_clock(dart):.0f}",
+        left="",
+        limit="",
     )
     return _Change(DART, message, replace(block, seams=(*block.seams, seam)), (plan.name,))
 
@@ -210,6 +214,8 @@ def _with_seam(
         piece=PieceName(plan.name),
         seam=SeamName(_plan_name(dart.seam)),
         clock=f"{_clock(dart):.0f}",
+        left="",
+        limit="",
     )
     yield _Change(SEAM, message, changed, names)
 

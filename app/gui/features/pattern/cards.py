@@ -24,7 +24,7 @@ from app.gui.widgets.menu import Menu, pull_down
 from app.gui.widgets.option_field import AmountEdit, OptionCombo
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import number, tr, tr_context
-from app.i18n.lengths import length
+from app.i18n.lengths import length, length_number
 from app.presenters.model_options import Amount
 from app.presenters.pattern import PieceRow, SeamRow
 from core.document.block import LARGEST_ALLOWANCE, WAY, Seam
@@ -277,8 +277,8 @@ class SeamCard(_Card):
             (first, second), (one, other) = row.lengths_mm, row.alone_mm
             lines += [
                 (tr("On the body"), length(row.on_body_mm, 1)),
-                (tr("Each piece alone"), f"{number(one, 1)} / {length(other, 1)}"),
-                (tr("Matched"), f"{number(first, 1)} / {length(second, 1)}"),
+                (tr("Each piece alone"), f"{length_number(one, 1)} / {length(other, 1)}"),
+                (tr("Matched"), f"{length_number(first, 1)} / {length(second, 1)}"),
             ]
         self._show_lines(lines or [(tr("An edge: nothing is sewn to it."), "")])
 

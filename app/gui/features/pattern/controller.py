@@ -17,6 +17,7 @@ from app.gui.features.pattern.ways_out import WaysOut
 from app.gui.features.pattern.worker import PatternRequest, PatternResult, PatternWorker
 from app.gui.theme.stylesheet import tokens_of
 from app.i18n.catalog import number, tr
+from app.i18n.lengths import length
 from app.presenters.messages import render
 from app.presenters.pattern import block_about, block_title, piece_rows, seam_rows, seam_title
 from app.presenters.pattern_layout import piece_shapes
@@ -122,7 +123,7 @@ class PatternController(QObject):
 
     def set_allowance(self, mm: float) -> None:
         """Set the allowance of seams without their own [mm]."""
-        self.change(tr("Seam allowance {mm} mm").format(mm=number(mm, 1)), "allowance", allowance=mm)
+        self.change(tr("Seam allowance {length}").format(length=length(mm, 1)), "allowance", allowance=mm)
 
     def set_bridged(self, on: bool) -> None:
         """Let the cloth span hollows or lie in them."""
@@ -258,8 +259,8 @@ class PatternController(QObject):
         rows, pattern = piece_rows(result.pattern), result.pattern
         tight = sum(not row.fits for row in rows)
         off = max((fit.off for fit in pattern.matched.fits), default=0.0)
-        note = tr("{count} pieces. Seams agree within {mm} mm.").format(
-            count=len(rows), mm=number(max(off, 0.01), 2)
+        note = tr("{count} pieces. Seams agree within {length}.").format(
+            count=len(rows), length=length(max(off, 0.01), 2)
         )
         if tight:
             words = (

@@ -12,6 +12,7 @@ from app.gui.widgets.basic import Segment, ToolButton, sentence
 from app.gui.widgets.dialog import Dialog
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
+from app.i18n.lengths import length, length_number
 from app.presenters.pattern_files import kind_titles, paper_titles
 from app.report.painter import UNITS
 from app.report.pdf_file import PaintedPages
@@ -117,10 +118,10 @@ class PatternExportDialog(Dialog):
 
     def _show_page(self) -> None:
         count = self.preview.count
-        text = tr("Page {page} of {count}, {width} × {height} mm")
+        text = tr("Page {page} of {count}, {width} × {height}")
         width, height = self.preview.size_mm
         told = text.format(
-            page=self.preview.page + 1, count=count, width=f"{width:.0f}", height=f"{height:.0f}"
+            page=self.preview.page + 1, count=count, width=length_number(width, 0), height=length(height, 0)
         )
         self.facts.setText(told if count else "")
         for each in self._turners:

@@ -9,6 +9,7 @@ import numpy as np
 from PySide6.QtCore import QObject
 
 from app.i18n.catalog import number, tr, tr_context
+from app.i18n.lengths import length, length_number, length_unit
 from app.presenters.pattern import piece_title, seam_title
 from core.document.block import Block, Seam
 from core.document.cloth import Cloth
@@ -140,7 +141,7 @@ class SeamEditing(QObject):
         plan, name = self._controller.plan, self._controller.seam
         seam = None if plan is None else self.seam(plan.block, name)
         if seam is not None:
-            amount = tr("as the pattern") if mm is None else f"{number(mm, 1)} mm"
+            amount = tr("as the pattern") if mm is None else length(mm, 1)
             text = tr("Allowance of {seam}: {amount}").format(seam=seam_title(name), amount=amount)
             self._edit_seam(replace(seam, allowance=mm), text)
 
@@ -195,8 +196,8 @@ class SeamEditing(QObject):
             along = arc_length(curve)
             places.append(interpolate(np.array([share * along[-1]]), along, curve)[0])
             lengths.append(tuple(share * each for each in fit.together))
-        words = " / ".join(f"{number(one, 1)} | {number(two, 1)}" for one, two in lengths)
-        return Walked(np.array(places).reshape(-1, 3), f"{words} mm" if words else "")
+        words = " / ".join(f"{length_number(one, 1)} | {length_number(two, 1)}" for one, two in lengths)
+        return Walked(np.array(places).reshape(-1, 3), f"{words} {length_unit()}" if words else "")
 
 
 def _original(block: Block) -> Block | None:
