@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from PySide6.QtCore import QEvent, Qt
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QKeyEvent, QUndoGroup
 from PySide6.QtWidgets import (
@@ -92,9 +90,6 @@ from app.gui.widgets.value_edit import forget_refused
 from app.i18n.catalog import tr
 from app.presenters.status import facts
 from app.presenters.zones import taken_up_texts
-from core.document.design import Design
-from core.geometry.mesh import Floats
-from core.geometry.planar_curves import Plane
 from core.pipeline.live_solver import Frame
 from core.pipeline.warnings import controlled_volume
 
@@ -198,17 +193,11 @@ class MainWindow(QMainWindow):
         self.sections_controller = SectionsController(
             context,
             self.uncertainty_controller.of,
-            self._target_profiles,
+            lambda plane: self.target_shape_controller.drawing.in_plane(plane),  # noqa: PLW0108 (made later)
         )
         self.start_controller = StartController(
             context, self.project_controller, Tour(self), lambda: self.session.stuck is not None
         )
-
-    def _target_profiles(self, plane: Plane) -> dict[str, Sequence[Floats]]:
-        return self.target_shape_controller.drawing.in_plane(plane)
-
-    def _is_on_trial(self, names: tuple[str, ...], design: Design) -> bool:
-        return self.target_shape_controller.around.is_tried_on(names, design)
 
     def _make_outputs(self) -> None:
         """Make plots, pictures, exports and the report."""
@@ -231,7 +220,7 @@ class MainWindow(QMainWindow):
         sources = LineSources(
             self.limits_controller.leeways,
             self.pressure_controller.of_active,
-            self._is_on_trial,
+            lambda names, design: self.target_shape_controller.around.is_tried_on(names, design),
         )
         self.lines_controller = LinesController(context, panel, sources)
         self.add_lines_controller = AddLinesController(context, panel)

@@ -173,6 +173,11 @@ def _generated(name: str) -> str:
     return tr("line {number}").format(number=number) if word == "line" and number.isdecimal() else name
 
 
+def own_title(name: Name) -> str:
+    """Return a title that comes with the program in the window's language, one of the user's own as it is."""
+    return tr_context(name.context, name.text)
+
+
 def elastic_title(name: str) -> str:
     """Return what an elastic is called; one of the user's own keeps its name."""
     mm = _built_in_widths().get(name)

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.i18n.catalog import tr_context
-from app.presenters.messages import render, sided_title
+from app.presenters.messages import own_title, render, sided_title
 from core.document.block import Block
-from core.messages import Message, PieceName, SeamName
+from core.messages import BlockName, ClothName, Message, PieceName, SeamName
 from core.pattern.garment import Pattern
 
 
@@ -60,7 +59,7 @@ def piece_rows(pattern: Pattern) -> tuple[PieceRow, ...]:
             PieceRow(
                 name,
                 piece_title(name),
-                tr_context("cloth", cloth.title),
+                own_title(ClothName(cloth.title)),
                 float(flat.areas.sum()) / 100.0,
                 100.0 * pattern.strains[name].within,
                 100.0 * cloth.limit,
@@ -96,7 +95,7 @@ def seam_rows(pattern: Pattern) -> tuple[SeamRow, ...]:
 
 def block_title(block: Block) -> str:
     """Return what a block is called; one of the user's own keeps its title."""
-    return tr_context("block", block.title)
+    return own_title(BlockName(block.title))
 
 
 def block_about(block: Block) -> str:

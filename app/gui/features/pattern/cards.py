@@ -23,12 +23,14 @@ from app.gui.widgets.basic import button, sentence
 from app.gui.widgets.menu import Menu, pull_down
 from app.gui.widgets.option_field import AmountEdit, OptionCombo
 from app.gui.widgets.tooltip import set_tip
-from app.i18n.catalog import number, tr, tr_context
+from app.i18n.catalog import number, tr
 from app.i18n.lengths import length, length_number
+from app.presenters.messages import own_title
 from app.presenters.model_options import Amount
 from app.presenters.pattern import PieceRow, SeamRow
 from core.document.block import LARGEST_ALLOWANCE, WAY, Seam
 from core.document.cloth import Cloth
+from core.messages import ClothName
 from core.pattern.dart_chart import DartChart
 
 STEPS = 200
@@ -165,7 +167,7 @@ class PieceCard(_Card):
     def _fill_menu(self, cloths: Sequence[Cloth], chosen: str) -> None:
         self._menu.clear()
         for cloth in cloths:
-            title = cloth_title(cloth)
+            title = own_title(ClothName(cloth.title))
             action = self._menu.addAction(title)
             action.setCheckable(True)
             action.setChecked(cloth.name == chosen)
@@ -295,11 +297,6 @@ class SeamCard(_Card):
             self._grid.addWidget(words, at, 0)
             self._grid.addWidget(figure, at, 1, _RIGHT)
             self._cells += [words, figure]
-
-
-def cloth_title(cloth: Cloth) -> str:
-    """Return the title of a cloth in the language in use."""
-    return tr_context("cloth", cloth.title)
 
 
 def _emitting(emit: Callable[[int], Any], place: int) -> Callable[[], None]:

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PySide6.QtCore import QObject
 
-from app.i18n.catalog import number, tr, tr_context
+from app.i18n.catalog import number, tr
 from app.i18n.lengths import length, length_number, length_unit
+from app.presenters.messages import own_title
 from app.presenters.pattern import piece_title, seam_title
 from core.document.block import Block, Seam
 from core.document.cloth import Cloth
@@ -17,6 +18,7 @@ from core.document.garment_pattern import GarmentPattern
 from core.errors import UserError
 from core.geometry.mesh import Points
 from core.geometry.plane_sections import arc_length, interpolate
+from core.messages import ClothName
 from core.pattern.block_library import built_in_blocks
 from core.pattern.cloth_library import find_cloth, with_cloth
 from core.pattern.garment import Pattern
@@ -162,7 +164,7 @@ class SeamEditing(QObject):
         """Cut the selected piece, and that of the other side, from a cloth."""
         plan, piece = self._controller.plan, self._controller.piece
         if plan is not None and piece:
-            title = tr_context("cloth", cloth.title)
+            title = own_title(ClothName(cloth.title))
             text = tr("Cloth of {piece}: {cloth}").format(piece=_both(piece), cloth=title)
             self._controller.set_plan(with_cloth(plan, _base(piece), cloth), text)
 
