@@ -220,7 +220,7 @@ class MainWindow(QMainWindow):
         sources = LineSources(
             self.limits_controller.leeways,
             self.pressure_controller.of_active,
-            lambda names, design: self.target_shape_controller.around.is_tried_on(names, design),
+            lambda *of: self.target_shape_controller.around.is_tried_on(*of),  # noqa: PLW0108 (made later)
         )
         self.lines_controller = LinesController(context, panel, sources)
         self.add_lines_controller = AddLinesController(context, panel)

@@ -48,32 +48,31 @@ def test_a_block_is_chosen_edited_and_every_edit_is_undone_by_name(mannequin: Pa
         assert view.isVisible()
         assert not window.strip.isVisible(), "the pieces have its room"
         assert panel.currentIndex() == 0, "there is no block yet"
-        yield from chosen(window, "two-part-cup")
+        yield from chosen(window, "one-part-cup")
         controller = window.pattern_controller
-        assert [row.row.name for row in panel.list.buttons][:2] == ["upper cup left", "upper cup right"]
-        assert len(controller.result.pattern.flats) == 9
+        assert [row.row.name for row in panel.list.buttons] == ["cup left", "cup right"]
         assert controller.layer.seams is not None, "the seams are drawn on the body"
         assert panel.export.isEnabled()
-        panel.list.buttons[2].click()
-        assert view.piece == "lower cup left"
+        panel.list.buttons[0].click()
+        assert view.piece == "cup left"
         assert panel.piece_card.isVisible()
         controller.editing.choose_cloth("power net")
         yield current(window)
         cloths = {flat.panel.name: flat.panel.cloth for flat in controller.result.pattern.flats}
-        assert cloths["lower cup left"] == cloths["lower cup right"] == "power net"
-        assert steps.undoText() == "Cloth of Lower cup: Power net"
+        assert cloths == {"cup left": "power net", "cup right": "power net"}
+        assert steps.undoText() == "Cloth of Cup: Power net"
         panel.allowance.entered.emit(10.0)
         assert steps.undoText() == "Seam allowance 10.0 mm"
-        controller.select_seam("cup seam left")
+        controller.select_seam("neckline left")
         assert not panel.piece_card.isVisible()
         panel.seam_card.allowance_changed.emit(4.0)
-        assert window.session.design.pattern.block.seam("cup seam").allowance == 4.0
+        assert window.session.design.pattern.block.seam("neckline").allowance == 4.0
         steps.undo()
         steps.undo()
         steps.undo()
         assert window.session.design.pattern.allowance == 7.0
         yield current(window)
-        assert {flat.panel.cloth for flat in controller.result.pattern.flats} >= {"cup tricot"}
+        assert {flat.panel.cloth for flat in controller.result.pattern.flats} == {"cup tricot"}
         steps.undo()
         assert panel.currentIndex() == 0, "without a block there is the choice again"
         assert controller.result is None
@@ -163,7 +162,7 @@ def test_pieces_are_exported_with_a_preview_and_kept_in_the_project(
             target.append(tmp_path / name)
             dialog.save.click()
             assert target[-1].stat().st_size > 500
-        assert Pdf(tmp_path / "a.pdf").count > 1
+        assert len(Pdf(tmp_path / "a.pdf").sizes) > 1
         told = json.loads((tmp_path / "a.json").read_text())
         assert [piece["name"] for piece in told["pieces"]] == ["cup", "cup"]
         target.append(tmp_path / "mine.json")
