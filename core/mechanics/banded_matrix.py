@@ -178,6 +178,20 @@ class Band:
 
         return solve
 
+    def pinned(self, lower: Floats, pin: float, most: int) -> tuple[Solve, Indices] | None:
+        """Return a solver of the symmetric matrix with this lower band, and coordinates that are pinned.
+
+        Wherever it is not positive definite, ``pin`` is added to the diagonal of ``lower``: of a coordinate
+        as often as it is returned. None if more than ``most`` would be.
+        """
+        pins: list[int] = []
+        matrix = lower.reshape(self.size, self.reach + 1).T
+        while (bad := lapack.dpbtrf(matrix, lower=1)[1]) and len(pins) < most:
+            matrix[0, bad - 1] += pin
+            pins.append(int(self._order[bad - 1]))
+        solve = self.cholesky(lower)
+        return None if solve is None else (solve, np.array(pins, dtype=np.int64))
+
     def lu(self, general: Floats) -> Solve | None:
         """Return a solver of the matrix with this general band, None if it is singular."""
         matrix = general.reshape(self.size, self._tall).T
