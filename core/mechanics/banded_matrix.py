@@ -15,6 +15,7 @@ import numpy as np
 from scipy import sparse
 from scipy.linalg import blas, lapack
 from scipy.sparse.csgraph import reverse_cuthill_mckee
+from scipy.sparse.linalg import splu
 
 from core.geometry.mesh import Flags, Floats, Indices, frozen
 
@@ -178,19 +179,27 @@ class Band:
 
         return solve
 
-    def pinned(self, lower: Floats, pin: float, most: int) -> tuple[Solve, Indices] | None:
-        """Return a solver of the symmetric matrix with this lower band, and coordinates that are pinned.
+    def indefinite(self, lower: Floats) -> tuple[Solve, int] | None:
+        """Return a solver of the symmetric matrix with this lower band, and how many directions are negative.
 
-        Wherever it is not positive definite, ``pin`` is added to the diagonal of ``lower``: of a coordinate
-        as often as it is returned. None if more than ``most`` would be.
+        None if it cannot be factored on its diagonal, as one that is singular.
         """
-        pins: list[int] = []
-        matrix = lower.reshape(self.size, self.reach + 1).T
-        while (bad := lapack.dpbtrf(matrix, lower=1)[1]) and len(pins) < most:
-            matrix[0, bad - 1] += pin
-            pins.append(int(self._order[bad - 1]))
-        solve = self.cholesky(lower)
-        return None if solve is None else (solve, np.array(pins, dtype=np.int64))
+        at = np.flatnonzero(lower)
+        column = at // (self.reach + 1)
+        row = column + at % (self.reach + 1)
+        off = row > column
+        both = np.concatenate([row, column[off]]), np.concatenate([column, row[off]])
+        values = np.concatenate([lower[at], lower[at][off]])
+        matrix = sparse.csc_array((values, both), shape=(self.size, self.size))
+        try:
+            factor = splu(matrix, "MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+        except RuntimeError:
+            return None
+        if (factor.perm_r != factor.perm_c).any():
+            return None
+        # By Sylvester's law of inertia: all pivots are on the diagonal.
+        negative = int((factor.U.diagonal() < 0.0).sum())
+        return lambda right: np.asarray(factor.solve(right[self._order])[self.place]), negative
 
     def lu(self, general: Floats) -> Solve | None:
         """Return a solver of the matrix with this general band, None if it is singular."""

@@ -27,9 +27,6 @@ _GAIN = 0.2
 
 _MOST_TURNS = 40
 
-_MOST_PINS = 12
-"""A matrix that needs more pins than these is raised."""
-
 
 @dataclass(frozen=True, eq=False)
 class FlatPanel:
@@ -141,9 +138,9 @@ def flatten_all(
 class HeldSolver:
     """Solves a panel's matrix while its mean place and its grain line are held.
 
-    The matrix alone lets the piece move and turn, and it may have negative directions: it is solved with some
-    coordinates pinned, which is then taken back exactly. ``rows`` (r, 2 p) are the three conditions and the
-    pins; each miss of them is taken back by ``found`` (2 p, r). ``negative`` directions are left while held.
+    The matrix alone lets the piece move and turn: it is solved with three coordinates pinned, which is then
+    taken back exactly. ``rows`` (6, 2 p) are the conditions and the pins; each miss of them is taken back by
+    ``found`` (2 p, 6). In ``negative`` directions the work falls while it is held.
     """
 
     solve: Solve
@@ -155,27 +152,28 @@ class HeldSolver:
     def of(cls, band: PlaneBand, lower: Floats, grain: Floats) -> HeldSolver | None:
         """Prepare the matrix with this ``lower`` band, which is overwritten; ``grain`` (p,) is to point up.
 
-        None if it is far from positive definite. Raises FloatingPointError if it is not finite.
+        None if it is singular. Raises FloatingPointError if it is not finite.
         """
         top, bottom = int(grain.argmax()), int(grain.argmin())
-        pins = np.array([2 * top, 2 * top + 1, 2 * bottom])
+        pins = [2 * top, 2 * top + 1, 2 * bottom]
         pin = float(np.abs(lower[band.diagonal]).mean())
         if not np.isfinite(pin):
             raise FloatingPointError("a matrix that is not finite")
         lower[band.diagonal[pins]] += pin
-        factor = band.band.pinned(lower, pin, _MOST_PINS)
-        if factor is None:
-            return None
-        solve, more = factor
-        pins, times = np.unique(np.concatenate([pins, more]), return_counts=True)
-        rows = np.zeros((3 + len(pins), 2 * len(grain)))
+        solve, negative = band.band.cholesky(lower), 0
+        if solve is None:
+            factor = band.band.indefinite(lower)
+            if factor is None:
+                return None
+            solve, negative = factor
+        rows = np.zeros((6, 2 * len(grain)))
         rows[0, ::2] = rows[1, 1::2] = 1.0 / len(grain)
         rows[2, ::2] = grain / np.abs(grain).sum()
-        rows[np.arange(3, len(rows)), pins] = 1.0
+        rows[[3, 4, 5], pins] = 1.0
         found = solve(rows.T)
-        small = rows @ found - np.diag(np.concatenate([np.zeros(3), 1.0 / (pin * times)]))
-        # By Sylvester's law of inertia: each condition takes one positive direction of it.
-        negative = int((np.linalg.eigvalsh(0.5 * (small + small.T)) > 0.0).sum()) - 3
+        small = rows @ found - np.diag(np.repeat([0.0, 1.0 / pin], 3))
+        # By Sylvester's law of inertia: three are those of the conditions.
+        negative += int((np.linalg.eigvalsh(0.5 * (small + small.T)) > 0.0).sum()) - 3
         return cls(solve, rows, found @ np.linalg.inv(small), negative)
 
     @classmethod

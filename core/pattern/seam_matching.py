@@ -32,7 +32,7 @@ _NEARLY = 0.02
 _GAIN = 0.2
 """Matrices serve again while each step is less than this part of the one before [1]."""
 
-_RAISED = (0.0, *(1e-4 * 4.0**k for k in range(16)))
+_RAISED = (0.0, *(1e-3 * 4.0**k for k in range(12)))
 """By how much the diagonal is raised where the matrix has no least, in parts of its mean [1]: ours."""
 
 _LONGEST_STEP = 8.0
