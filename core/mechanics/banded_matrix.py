@@ -15,6 +15,7 @@ import numpy as np
 from scipy import sparse
 from scipy.linalg import blas, lapack
 from scipy.sparse.csgraph import reverse_cuthill_mckee
+from scipy.sparse.linalg import splu
 
 from core.geometry.mesh import Flags, Floats, Indices, frozen
 
@@ -177,6 +178,28 @@ class Band:
             return np.asarray(found[self.place])
 
         return solve
+
+    def indefinite(self, lower: Floats) -> tuple[Solve, int] | None:
+        """Return a solver of the symmetric matrix with this lower band, and how many directions are negative.
+
+        None if it cannot be factored on its diagonal, as one that is singular.
+        """
+        at = np.flatnonzero(lower)
+        column = at // (self.reach + 1)
+        row = column + at % (self.reach + 1)
+        off = row > column
+        both = np.concatenate([row, column[off]]), np.concatenate([column, row[off]])
+        values = np.concatenate([lower[at], lower[at][off]])
+        matrix = sparse.csc_array((values, both), shape=(self.size, self.size))
+        try:
+            factor = splu(matrix, "MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+        except RuntimeError:
+            return None
+        if (factor.perm_r != factor.perm_c).any():
+            return None
+        # By Sylvester's law of inertia: all pivots are on the diagonal.
+        negative = int((factor.U.diagonal() < 0.0).sum())
+        return lambda right: np.asarray(factor.solve(right[self._order])[self.place]), negative
 
     def lu(self, general: Floats) -> Solve | None:
         """Return a solver of the matrix with this general band, None if it is singular."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -134,49 +134,55 @@ def flatten_all(
         return problem.results(problem.minimum(problem.joined(starts)))
 
 
-Factor = Callable[[Floats], Solve | None]
-"""What makes a solver of a lower band, if there is one."""
-
-
 @dataclass(frozen=True, eq=False)
 class HeldSolver:
     """Solves a panel's matrix while its mean place and its grain line are held.
 
-    The matrix alone lets the piece move and turn, and of a cloth that is not alike in all directions it has
-    a negative direction: it is solved with three coordinates pinned, which is then taken back exactly.
-    ``rows`` (6, 2 p) are the conditions and the pins; each miss of them is taken back by ``found`` (2 p, 6).
+    The matrix alone lets the piece move and turn: it is solved with three coordinates pinned, which is then
+    taken back exactly. ``rows`` (6, 2 p) are the conditions and the pins; each miss of them is taken back by
+    ``found`` (2 p, 6). In ``negative`` directions the work falls while it is held.
     """
 
     solve: Solve
     rows: Floats
     found: Floats
+    negative: int
 
     @classmethod
-    def of(cls, band: PlaneBand, lower: Floats, grain: Floats, factor: Factor) -> HeldSolver | None:
+    def of(cls, band: PlaneBand, lower: Floats, grain: Floats) -> HeldSolver | None:
         """Prepare the matrix with this ``lower`` band, which is overwritten; ``grain`` (p,) is to point up.
 
-        None where ``factor`` finds no solver of it.
+        None if it is singular. Raises FloatingPointError if it is not finite.
         """
         top, bottom = int(grain.argmax()), int(grain.argmin())
         pins = [2 * top, 2 * top + 1, 2 * bottom]
         pin = float(np.abs(lower[band.diagonal]).mean())
+        if not np.isfinite(pin):
+            raise FloatingPointError("a matrix that is not finite")
         lower[band.diagonal[pins]] += pin
-        solve = factor(lower)
+        solve, negative = band.band.cholesky(lower), 0
         if solve is None:
-            return None
+            factor = band.band.indefinite(lower)
+            if factor is None:
+                return None
+            solve, negative = factor
         rows = np.zeros((6, 2 * len(grain)))
         rows[0, ::2] = rows[1, 1::2] = 1.0 / len(grain)
         rows[2, ::2] = grain / np.abs(grain).sum()
         rows[[3, 4, 5], pins] = 1.0
-        found = solve(rows.T) * np.repeat([1.0, -pin], 3)
-        inverse = np.linalg.inv(rows @ found + np.diag(np.repeat([0.0, 1.0], 3)))
-        return cls(solve, rows, found @ inverse)
+        found = solve(rows.T)
+        small = rows @ found - np.diag(np.repeat([0.0, 1.0 / pin], 3))
+        # By Sylvester's law of inertia: three are those of the conditions.
+        negative += int((np.linalg.eigvalsh(0.5 * (small + small.T)) > 0.0).sum()) - 3
+        return cls(solve, rows, found @ np.linalg.inv(small), negative)
 
     @classmethod
     def raised(cls, band: PlaneBand, lower: Floats, grain: Floats) -> HeldSolver:
-        """Prepare the same with a diagonal that is raised until the matrix is positive definite."""
-        solver = cls.of(band, lower, grain, band.factor)
-        assert solver is not None
+        """Prepare the same with a diagonal that is raised until no direction is negative."""
+        raised = 1e-4 * float(np.abs(lower[band.diagonal]).mean())
+        while (solver := cls.of(band, lower.copy(), grain)) is None or solver.negative:
+            lower[band.diagonal] += raised
+            raised *= 4.0
         return solver
 
     def __call__(self, right: Floats, off: Floats | None = None) -> Floats:

@@ -23,17 +23,17 @@ NO_RATIOS: Mapping[tuple[str, int], float] = MappingProxyType({})
 STRETCH = 15.0
 """Sides agree over each stretch of about this length [mm]; shorter ones only bend the outline."""
 
-TOLERANCE = 1e-3
-"""The step after which the pieces are at rest [mm]: with old matrices the next is a fifth of it."""
+_REST = 4e-4
+"""What would be left to go when the pieces are at rest [mm]."""
 
-_NEARLY = 0.02
-"""The same with new matrices [mm]: the next step is of about its square."""
+_AT_REST_TO_THE_EYE = 2e-3
+"""The same while something is dragged [mm]."""
 
 _GAIN = 0.2
 """Matrices serve again while each step is less than this part of the one before [1]."""
 
-_FIRMER = (0.0, 1.0, 4.0, 16.0)
-"""How stiff sides are made along themselves where the matrix has no least [stiffness]. Source: ours."""
+_RAISED = (0.0, *(1e-3 * 4.0**k for k in range(12)))
+"""By how much the diagonal is raised where the matrix has no least, in parts of its mean [1]: ours."""
 
 _LONGEST_STEP = 8.0
 """No point goes further in one turn [mm]."""
@@ -117,6 +117,7 @@ class Matched:
     tensions: Floats
     _problem: FlatProblem
     _misfits: Floats
+    _system: _System | None
 
     @cached_property
     def alone(self) -> tuple[FlatPanel, ...]:
@@ -157,7 +158,8 @@ def match(
     """Lay ``panels`` whose points are at ``places``, each (p, 3) [mm], flat so that their ``seams`` fit.
 
     The sum of their work is the least at which each stretch of each seam is as long on both sides, after
-    ease. A ``former`` answer for the same panels and seams saves turns.
+    ease. While something is dragged, a ``former`` answer for the same panels and seams saves turns and
+    matrices; the places are then right to about 0.01 mm, good for the eye. What is written is made without.
     """
     problem = FlatProblem.of(panels, places, cloths)
     with one_blas_thread():
@@ -166,12 +168,13 @@ def match(
             tensions = np.zeros(sum(int(seam.stretch[-1]) + 1 for seam in seams))
         else:
             flat, tensions = problem.joined(_worn(former.flats)), former.tensions
-        off = tensions
+        off, system = tensions, None
         if seams:
             stretches = _Stretches.of(problem, seams)
-            flat, tensions = _together(problem, stretches, flat, tensions)
+            system = None if former is None else former._system
+            flat, tensions, system = _together(problem, stretches, flat, tensions, system)
             off = stretches.misfits(flat)
-    return Matched(problem.results(flat), tuple(seams), tensions, problem, off)
+    return Matched(problem.results(flat), tuple(seams), tensions, problem, off, system)
 
 
 @dataclass(frozen=True, eq=False)
@@ -227,18 +230,13 @@ class _Stretches:
         entries = (value.ravel(), (at.ravel(), np.tile(self.row, 4)))
         return sparse.csc_array(sparse.coo_array(entries, (2 * len(flat), self.count)))
 
-    def add(
-        self, problem: FlatProblem, panel: int, lower: Floats, flat: Floats, tensions: Floats, along: float
-    ) -> None:
-        """Add to the lower band of a panel what ``tensions`` (count,) add as its steps turn.
-
-        It also makes steps ``along`` times as stiff as they are at a stiffness of 1.
-        """
+    def add(self, problem: FlatProblem, panel: int, lower: Floats, flat: Floats, tensions: Floats) -> None:
+        """Add to the lower band of a panel what ``tensions`` (count,) add as its steps turn."""
         own = self.panel == panel
         way, length = (each[own] for each in self.steps(flat))
         ahead = way[:, :, None] * way[:, None]
         force = (tensions[self.row] * self.sign)[own] / length
-        part = force[:, None, None] * (np.eye(2) - ahead) + along * ahead
+        part = force[:, None, None] * (np.eye(2) - ahead)
         part *= self.shrink[own, :, None] * self.shrink[own, None]
         both = [np.concatenate([part, -part], axis=2), np.concatenate([-part, part], axis=2)]
         ends = np.stack([self.start[own], self.end[own]], axis=1) - problem.points[panel].start
@@ -251,44 +249,40 @@ class _Stretches:
 
 
 def _together(
-    problem: FlatProblem, stretches: _Stretches, flat: Floats, tensions: Floats
-) -> tuple[Floats, Floats]:
-    """Return places (N, 2) [mm] and tensions of the least work under equal lengths, by Newton steps."""
-    system, before = None, np.inf
+    problem: FlatProblem, stretches: _Stretches, flat: Floats, tensions: Floats, system: _System | None
+) -> tuple[Floats, Floats, _System | None]:
+    """Return places (N, 2) [mm] and tensions of the least work under equal lengths, by Newton steps.
+
+    ``system`` is that of a former answer, if there is one; the last one is returned.
+    """
+    rest, before = _REST if system is None else _AT_REST_TO_THE_EYE, np.inf
     for _ in range(_MOST_TURNS):
         state = problem.state(flat)
         cloth = state, problem.turned_slopes(state)
         pull = problem.slope(*cloth) + (stretches.slopes(flat) @ tensions).reshape(-1, 2)
-        off = stretches.misfits(flat)
         new = system is None
         if system is None:
             system = _System.at(problem, stretches, problem.blocks(*cloth), flat, tensions)
-        step, change = system.step(pull, flat, off)
+        step, change = system.step(pull, flat, stretches.misfits(flat))
         size = float(np.abs(step).max())
+        if not new and size > before:
+            system = None  # too old even for this step
+            continue
         share = min(1.0, _LONGEST_STEP / max(size, 1e-12))
         flat, tensions = flat + share * step, tensions + share * change
-        if size < (_NEARLY if new else TOLERANCE):
+        # The next step is of about the square of a Newton step; others shrink by the same part again.
+        part = size if new and system.is_exact else size / before if np.isfinite(before) else 1.0
+        if size * part < rest:
             break
         system, before = (system, size) if size < _GAIN * before else (None, size)
-    return flat, tensions
+    return flat, tensions, system
 
 
-def _solver(
-    problem: FlatProblem, stretches: _Stretches, panel: int, lower: Floats, flat: Floats, tensions: Floats
-) -> HeldSolver:
-    """Return a solver of a panel's matrix whose ``lower`` band is that of the cloth alone.
-
-    It need not be positive definite, as lengths that are held keep the piece from giving way. Then its sides
-    are made stiffer along themselves, which changes little else.
-    """
-    band, grain = problem.panels[panel].band, problem.panels[panel].grain
-    for along in _FIRMER:
-        whole = lower.copy()
-        stretches.add(problem, panel, whole, flat, tensions, along)
-        solver = HeldSolver.of(band, whole, grain, band.band.cholesky)
-        if solver is not None:
-            return solver
-    return HeldSolver.raised(band, whole, grain)
+def _solver(panel: Panel, lower: Floats, share: float) -> HeldSolver | None:
+    """Return a solver of a panel's matrix, its diagonal raised by a ``share`` of its mean."""
+    raised, diagonal = lower.copy(), panel.band.diagonal
+    raised[diagonal] += share * np.abs(lower[diagonal]).mean()
+    return HeldSolver.of(panel.band, raised, panel.grain)
 
 
 @dataclass(frozen=True, eq=False)
@@ -296,7 +290,8 @@ class _System:
     """The matrices of all panels, held, and what their stretches make of them.
 
     ``slopes`` are each panel's of the stretches ``columns`` that it has, ``yields`` how its places give way
-    to their tensions; ``tighten`` makes tensions of differences of length.
+    to their tensions; ``tighten`` makes tensions of differences of length. It ``is_least`` where no direction
+    that keeps all lengths is negative, and ``is_exact`` where nothing was raised for that.
     """
 
     points: tuple[slice, ...]
@@ -305,22 +300,40 @@ class _System:
     slopes: list[Floats]
     yields: list[Floats]
     tighten: Solve
+    is_least: bool
+    is_exact: bool
 
     @classmethod
     def at(
-        cls,
-        problem: FlatProblem,
-        stretches: _Stretches,
-        blocks: Floats,
-        flat: Floats,
-        tensions: Floats,
+        cls, problem: FlatProblem, stretches: _Stretches, blocks: Floats, flat: Floats, tensions: Floats
     ) -> _System:
-        """Return the system at ``flat`` (N, 2) under ``tensions`` (c,); ``blocks`` are those of the cloth."""
+        """Return the system at ``flat`` (N, 2) under ``tensions`` (c,); ``blocks`` are those of the cloth.
+
+        Panels may have negative directions, as lengths that are held keep a piece from giving way. Where
+        these do not suffice, the diagonal of such panels is raised.
+        """
         slopes = sparse.csr_array(stretches.slopes(flat))
-        solvers = [
-            _solver(problem, stretches, panel, lower, flat, tensions)
-            for panel, lower in enumerate(problem.lowers(blocks))
-        ]
+        lowers = problem.lowers(blocks)
+        for panel, lower in enumerate(lowers):
+            stretches.add(problem, panel, lower, flat, tensions)
+        solvers: list[HeldSolver | None] = [None] * len(lowers)
+        for share in _RAISED:
+            solvers = [
+                _solver(panel, lower, share) if known is None or known.negative else known
+                for panel, lower, known in zip(problem.panels, lowers, solvers, strict=True)
+            ]
+            ready = [solver for solver in solvers if solver is not None]
+            if (
+                len(ready) == len(solvers)
+                and (system := cls._of(problem, slopes, ready, share == 0.0)).is_least
+            ):
+                return system
+        raise FloatingPointError("a matrix that cannot be raised")
+
+    @classmethod
+    def _of(
+        cls, problem: FlatProblem, slopes: sparse.csr_array, solvers: list[HeldSolver], is_exact: bool
+    ) -> _System:
         matrix = np.zeros((slopes.shape[1],) * 2)
         columns, parts, yields = [], [], []
         for points, solver in zip(problem.points, solvers, strict=True):
@@ -332,8 +345,11 @@ class _System:
             columns.append(which)
             parts.append(part)
             yields.append(given)
+        negative = sum(solver.negative for solver in solvers)
+        # By Sylvester's law of inertia, lengths that are held must take away each negative direction.
+        is_least = negative == 0 or int((np.linalg.eigvalsh(matrix) < 0.0).sum()) == negative
         tighten = partial(lu_solve, lu_factor(matrix))
-        return cls(problem.points, solvers, columns, parts, yields, tighten)
+        return cls(problem.points, solvers, columns, parts, yields, tighten, is_least, is_exact)
 
     def step(self, pull: Floats, flat: Floats, off: Floats) -> tuple[Floats, Floats]:
         """Return the step (N, 2) and the change of tensions (c,) that end ``pull`` and ``off`` (c,)."""

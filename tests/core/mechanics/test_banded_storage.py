@@ -154,3 +154,15 @@ def test_the_order_of_the_coordinates_is_irrelevant_to_the_answer(contact, monke
         other.state.moved, solve_exact(same, mid_bust(same, 0.95)).state.moved, atol=1e-10
     )
     assert one.is_converged
+
+
+@SEEDS
+def test_indefinite_matrices_are_solved_and_their_negative_directions_counted(seed):
+    rng, first, second, band = scattered(seed)
+    full, lower = symmetric(rng, first, second, band)
+    full, lower = full + 0.1 * np.eye(band.size), lower + shifted(band, 0.1)
+    solve, negative = band.indefinite(lower)
+    right = rng.normal(size=(band.size, 3))
+    np.testing.assert_allclose(full @ solve(right), right, atol=1e-8)
+    assert negative == (np.linalg.eigvalsh(full) < 0.0).sum() > 0
+    assert band.indefinite(np.zeros(len(lower))) is None

@@ -3,13 +3,21 @@
 import numpy as np
 import pytest
 from curved_patches import EVEN, LACE, PlainCloth, ball, cap, circle, cone, cylinder, loop, on_ball, sheet
+from scipy.linalg import null_space
 from scipy.spatial import cKDTree
 from scipy.spatial.distance import pdist
 from slopes import slope
 
 from core.geometry.mesh import half_edges
 from core.pattern.cloth_energy import ClothState, stiffness_matrix
-from core.pattern.flattening import FlatProblem, crosses_itself, flatten, flatten_all, strain_summary
+from core.pattern.flattening import (
+    FlatProblem,
+    HeldSolver,
+    crosses_itself,
+    flatten,
+    flatten_all,
+    strain_summary,
+)
 from core.pattern.panel import PanelSeed, cut_panels
 from core.pattern.surface_cut import cut_surface
 
@@ -219,3 +227,24 @@ def test_an_outline_that_crosses_itself_is_found():
     square = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]])
     assert not crosses_itself(square)
     assert crosses_itself(square[[0, 2, 1, 3]])
+
+
+@pytest.mark.parametrize("less", [0.0, 0.02, 0.2])
+def test_a_held_matrix_is_solved_exactly_whether_or_not_it_is_positive(less):
+    panel = cap(30.0)
+    problem = FlatProblem.of([panel], [panel.places(ball().vertices)], [LACE])
+    state = problem.state(panel.start)
+    (lower,) = problem.lowers(problem.blocks(state, problem.turned_slopes(state)))
+    lower[panel.band.diagonal] -= less * np.abs(lower[panel.band.diagonal]).mean()
+    matrix, count = panel.band.band.full(lower), len(panel.start)
+    conditions = np.zeros((3, 2 * count))
+    conditions[0, ::2] = conditions[1, 1::2] = 1.0
+    conditions[2, ::2] = panel.grain
+    free = null_space(conditions)
+    held = free.T @ matrix @ free
+    solver = HeldSolver.of(panel.band, lower, panel.grain)
+    assert solver.negative == (np.linalg.eigvalsh(held) < 0.0).sum()
+    assert (solver.negative > 0) == (less > 0.0)
+    right = np.random.default_rng(3).normal(size=(2 * count, 2))
+    expected = free @ np.linalg.solve(held, free.T @ right)
+    np.testing.assert_allclose(solver(right), expected, atol=1e-7 * np.abs(expected).max())

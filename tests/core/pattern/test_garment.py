@@ -16,6 +16,7 @@ from core.pattern.garment import CutGarment, Pattern, cut_garment
 from core.pattern.piece import SAME
 from core.pattern.places import BodyPlaces
 from core.pattern.seam_curves import SeamDrawing
+from core.pattern.seam_matching import _System
 from core.pipeline.build import Stages
 
 Built = Callable[[str], Stages]
@@ -112,3 +113,43 @@ def test_panels_ride_on_the_body_and_start_from_the_pattern_before(built: Built)
     turned = garment.flat(rest @ turn.T + 40.0, CLOTHS)
     for one, other in zip(before.flats, turned.flats, strict=True):
         assert np.abs(one.points - other.points).max() < 1e-4, "the same body, turned and shifted"
+
+
+@pytest.fixture
+def turns(monkeypatch: pytest.MonkeyPatch) -> dict[str, int]:
+    """How often matching has made matrices, and steps."""
+    count = {"matrices": 0, "steps": 0}
+    make, step = _System.at.__func__, _System.step  # type: ignore[attr-defined]
+
+    def counted_make(cls: type[_System], *parts: object) -> _System:
+        count["matrices"] += 1
+        return make(cls, *parts)  # type: ignore[no-any-return]
+
+    def counted_step(system: _System, *parts: object) -> object:
+        count["steps"] += 1
+        return step(system, *parts)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(_System, "at", classmethod(counted_make))
+    monkeypatch.setattr(_System, "step", counted_step)
+    return count
+
+
+@pytest.mark.parametrize("sample", ["mannequin", "person"])
+def test_narrow_tips_come_to_rest_in_few_turns(built: Built, sample: str, turns: dict[str, int]) -> None:
+    stages = built(sample)
+    garment, rest = cut(stages, "two-part-cup"), stages.body.smoothed.vertices
+    cold = garment.flat(rest, CLOTHS)
+    assert turns["matrices"] <= 12
+    assert turns["steps"] <= 18
+    turns.update(matrices=0, steps=0)
+    again = garment.flat(rest, CLOTHS, cold.matched)
+    assert turns["matrices"] == 0
+    assert turns["steps"] <= 2
+    moved = rest + 3.0 * np.sin(rest[:, [2, 0, 1]] / 60.0 + 1.0)
+    warm = garment.flat(moved, CLOTHS, again.matched)
+    assert turns["matrices"] <= 4
+    afresh = garment.flat(moved, CLOTHS)
+    for fit in warm.matched.fits:
+        assert fit.off < 0.02
+    for one, other in zip(warm.flats, afresh.flats, strict=True):
+        assert np.abs(one.points - other.points).max() < 0.2
