@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -53,11 +53,13 @@ class PanelSide:
 
     ``points`` (k,) are points of the panel, counter-clockwise round it seen from outside. To it is sewn, in
     reverse order, the side of ``partner``, a panel's name and the number of its side; to an edge None.
+    ``ends`` (2, 3) [mm] are its corners on the skin at rest, where cloth over a hollow is not.
     """
 
     name: str
     points: Indices
     partner: tuple[str, int] | None
+    ends: Points = field(default_factory=lambda: np.zeros((2, 3)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +111,7 @@ def cut_panels(
     their seams, also those that are ``kept`` as they were cut before. ``bridge`` moves the skin of all panels
     to where cloth spans its hollows. Raises PatternError where a panel is open or in the way of another.
     """
-    net = seam_net(cut)
+    on_skin = net = seam_net(cut)
     regions = skin_regions(net, tuple(seed.name for seed in seeds), np.array([seed.place for seed in seeds]))
     if bridge is not None:
         cut = bridge(cut, np.concatenate([region.source[region.faces] for region in regions]))
@@ -119,7 +121,7 @@ def cut_panels(
     for region, step in zip(regions, steps, strict=True):
         for piece in [run[0] for run in region.runs] + [slit[0] for slit in region.slits]:
             finest[piece] = min(step, finest.get(piece, np.inf))
-    beside = _kept_sides(net, list(finest), kept)
+    beside = _kept_sides(on_skin, list(finest), kept)
     samples = {
         piece: _Samples.of(cut, net.pieces[piece], step, beside[piece][1] if piece in beside else None)
         for piece, step in finest.items()
@@ -132,7 +134,9 @@ def cut_panels(
     where = {key: (seeds[at].name, side) for at, keys in enumerate(runs) for side, key in enumerate(keys)}
     where |= {key: place for key, _, place in beside.values() if key not in where}
     return tuple(
-        replace(panel, sides=tuple(_sewn(net, *pair, where) for pair in zip(panel.sides, keys, strict=True)))
+        replace(
+            panel, sides=tuple(_sewn(on_skin, *pair, where) for pair in zip(panel.sides, keys, strict=True))
+        )
         for panel, keys in parts
     )
 
@@ -152,12 +156,10 @@ def _kept_sides(
         ends.setdefault(net.cut.curves[piece.curve].name, []).append((number, places))
     found = {}
     for panel in kept:
-        places = panel.places(net.cut.skin.vertices)
         for at, side in enumerate(panel.sides):
-            own = places[side.points[[0, -1]]]
             for number, theirs in ends.get(side.name, ()):
                 for forward in (True, False):
-                    if np.abs(own - (theirs if forward else theirs[::-1])).max() < _SAME:
+                    if np.abs(side.ends - (theirs if forward else theirs[::-1])).max() < _SAME:
                         found[number] = (number, forward), len(side.points) - 1, (panel.name, at)
     return found
 
@@ -168,7 +170,9 @@ def _sewn(
     """Return a side with its partner: the one along the same piece of seam the other way round."""
     piece, forward = key
     curve = net.cut.curves[net.pieces[piece].curve]
-    return replace(side, name=curve.name, partner=None if curve.is_edge else where.get((piece, not forward)))
+    ends = net.cut.vertices[net.pieces[piece].chain[[0, -1]]]
+    partner = None if curve.is_edge else where.get((piece, not forward))
+    return replace(side, name=curve.name, partner=partner, ends=ends if forward else ends[::-1])
 
 
 @dataclass(frozen=True, eq=False)

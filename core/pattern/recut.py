@@ -11,6 +11,7 @@ from scipy.spatial import cKDTree
 from core.document.block import Block
 from core.errors import PatternError
 from core.geometry.mesh import Flags, Mesh, Points
+from core.geometry.plane_sections import arc_length
 from core.pattern.garment import CutGarment, bridge_of, cut_garment, panel_seeds, surface_curves
 from core.pattern.panel import Panel, PanelSeed, cut_panels
 from core.pattern.seam_curves import SeamCurve, SeamDrawing
@@ -18,6 +19,13 @@ from core.pattern.surface_cut import cut_surface
 
 NEAR = 10.0
 """Curves nearer than this to the outline of a panel may end on it [mm]: more than steps of both, and SNAP."""
+
+
+SAME = 0.01
+"""An end of a curve that moved less is where it was [mm]."""
+
+CLEAR = 25.0
+"""Within this of an end that is where it was, a curve touches no panel beyond the seam that it meets [mm]."""
 
 
 def recut(former: CutGarment, drawing: SeamDrawing, block: Block) -> CutGarment:
@@ -64,22 +72,33 @@ def _is_alike(former: CutGarment, block: Block, curves: Sequence[SeamCurve]) -> 
 
 def _touched(former: CutGarment, block: Block, curves: Sequence[SeamCurve], skin: Mesh) -> set[str]:
     """Return the names of the panels that are other ones, or that a changed seam may touch."""
-    changed = [
-        points
-        for old, new in zip(former.curves, curves, strict=True)
-        if not (
-            np.array_equal(old.points, new.points)
-            and (old.seam.slit, old.seam.edge) == (new.seam.slit, new.seam.edge)
-        )
-        for points in (old.points, new.points)
-    ]
     pairs = zip(former.block.panels, block.panels, strict=True)
     others = {new.name for old, new in pairs if old != new}
     names = {panel.name for panel in former.panels if _plan_of(panel.name) in others}
-    if changed:
-        tree = cKDTree(np.concatenate(changed))
+    moved, places = set(), [np.zeros((0, 3))]
+    for old, new in zip(former.curves, curves, strict=True):
+        alike = (old.seam.slit, old.seam.edge) == (new.seam.slit, new.seam.edge)
+        if alike and np.array_equal(old.points, new.points):
+            continue
+        moved.add(new.name)
+        ends = np.linalg.norm(old.points[[0, -1]] - new.points[[0, -1]], axis=1) < SAME
+        places += [_between(each.points, ends) for each in (old, new)]
+    names |= {panel.name for panel in former.panels if any(side.name in moved for side in panel.sides)}
+    whole = np.concatenate(places)
+    if len(whole):
+        tree = cKDTree(whole)
         names |= {panel.name for panel in former.panels if _is_near(tree, _outline(panel, skin))}
     return names
+
+
+def _between(points: Points, kept: Flags) -> Points:
+    """Return the points of a curve without those near its ends that are ``kept`` (2,).
+
+    There it meets other seams in the same places as before, and the panels beyond them stay as they are.
+    """
+    along = arc_length(points)
+    inner = (along >= CLEAR * kept[0]) & (along <= along[-1] - CLEAR * kept[1])
+    return np.asarray(points[inner])
 
 
 def _plan_of(name: str) -> str:

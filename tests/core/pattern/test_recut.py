@@ -28,8 +28,8 @@ def drawing(stages: Stages) -> SeamDrawing:
 
 
 @cache
-def first(stages: Stages) -> CutGarment:
-    return cut_garment(drawing(stages), find_block(BLOCK))
+def first(stages: Stages, bridged: bool = False) -> CutGarment:
+    return cut_garment(drawing(stages), find_block(BLOCK), bridged)
 
 
 def changed(seam: str, former: str, place: str) -> Block:
@@ -55,7 +55,7 @@ def kept(one: CutGarment, other: CutGarment) -> set[str]:
 MOVES = [
     ("side seam", "ring band 0.50", "ring band 0.52", {"upper cup", "lower cup", "bridge"}),
     ("bridge seam", "root 205", "root 215", {"upper cup", "wing"}),
-    ("cup seam", "root 72", "root 80", {"wing"}),
+    ("cup seam", "root 72", "root 80", {"bridge", "wing"}),
 ]
 
 
@@ -65,7 +65,7 @@ def test_a_garment_cut_again_is_the_one_cut_afresh(
 ) -> None:
     stages, block = built("mannequin"), changed(seam, former, place)
     found = recut(first(stages), drawing(stages), block)
-    fresh = cut_garment(SeamDrawing(drawing(stages).places), block)
+    fresh = cut_garment(SeamDrawing(drawing(stages).places), block, is_bridged=False)
     assert {plan(name) for name in kept(first(stages), found)} == same
     vertices = stages.body.smoothed.vertices
     for one, other in zip(found.panels, fresh.panels, strict=True):
@@ -95,6 +95,22 @@ def test_kept_panels_keep_the_points_of_their_seams(built: Built) -> None:
             np.testing.assert_allclose(mine, other.places(vertices)[back.points][::-1], atol=1e-6)
             sewn += 1
     assert sewn == sum(side.partner is not None for panel in first(stages).panels for side in panel.sides)
+
+
+def test_a_seam_whose_ends_stay_touches_the_panels_beside_it_alone(built: Built) -> None:
+    stages, block = built("mannequin"), changed("cup seam", "apex", "root 180*0.15")
+    before = first(stages, bridged=True)
+    found = recut(before, drawing(stages), block)
+    assert {plan(name) for name in kept(before, found)} >= {"bridge", "wing"}
+    assert not kept(before, found) & {"lower cup left", "upper cup left"}
+    fresh = cut_garment(SeamDrawing(drawing(stages).places), block)
+    vertices = stages.body.smoothed.vertices
+    for one, other in zip(found.panels, fresh.panels, strict=True):
+        for mine, theirs in zip(one.sides, other.sides, strict=True):
+            places = (each.places(vertices)[side.points] for each, side in ((one, mine), (other, theirs)))
+            ends = [np.diff(each, axis=0) for each in places]
+            long, short = (float(np.linalg.norm(each, axis=1).sum()) for each in ends)
+            assert long == pytest.approx(short, abs=1.0), "but for cloth over hollows, which was taut apart"
 
 
 def test_what_is_not_cut_keeps_all_panels_or_none(built: Built) -> None:
