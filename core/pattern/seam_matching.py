@@ -274,7 +274,9 @@ def _together(
         part = size if new and system.is_exact else size / before if np.isfinite(before) else 1.0
         if size * part < rest:
             break
-        system, before = (system, size) if size < _GAIN * before else (None, size)
+        if min(part, size / before) >= _GAIN:
+            system = None
+        before = size
     return flat, tensions, system
 
 
