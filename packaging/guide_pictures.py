@@ -40,6 +40,10 @@ SMALL, WIDE, LARGE = (1280, 800), (1440, 800), (1600, 1000)
 DARK = {"dark": True, "language": "ja", "size": SMALL}
 
 
+def _bare_mannequin() -> Design:
+    return replace(sample_design("mannequin"), lines=())
+
+
 def _mannequin() -> Design:
     return sample_design()
 
@@ -98,6 +102,7 @@ ONCE = (
     Shot("spread", bra, advice_scenes.sure, {"size": LARGE}),
     Shot("even", bra, advice_scenes.even, {"size": SMALL}),
     Shot("worn", bra, advice_scenes.compared, {"size": SMALL}),
+    Shot("pattern", _bare_mannequin, scenes.pattern, {"size": LARGE}),
     Shot("lines-dark-ja", _person, step("lines"), DARK, small=True),
 )
 
@@ -108,6 +113,7 @@ def _all() -> Iterator[Shot]:
         english = Shot(name, design, scene, {"size": SMALL}, small=True)
         yield english
         yield replace(english, name=f"ja/{name}", options={"size": SMALL, "language": "ja"})
+    yield Shot("ja/pattern", _bare_mannequin, scenes.pattern, {"size": SMALL, "language": "ja"}, small=True)
     yield Shot("ja/map", _mannequin, scenes.mapped, {"size": LARGE, "language": "ja"}, small=True)
 
 

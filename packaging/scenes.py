@@ -24,6 +24,7 @@ from app.presenters.samples import dressed_sample, sample_design, sample_path
 from core.document.design import Design, ScanSource, new_design
 from core.garment.elastic_library import find_elastic
 from core.garment.presets import find_preset, with_preset
+from core.pattern.block_library import find_block
 
 Scene = Callable[[MainWindow], QWidget | None]
 """Brings a window to what is shown; returns the part that the picture is of, None for all of it."""
@@ -109,6 +110,15 @@ def girdle(window: MainWindow) -> None:
     """Show the whole body, with the waist selected in the list."""
     window.selection.select_line("waist")
     window.view.viewport.frame_all()
+
+
+def pattern(window: MainWindow) -> None:
+    """Show the pieces of a two-part cup, with the cup seam selected."""
+    window.navigation.show_step("pattern")
+    controller = window.pattern_controller
+    controller.choose_block(find_block("two-part-cup"))
+    wait_for(controller.is_current)
+    controller.select_seam("cup seam left")
 
 
 def step(name: str) -> Scene:

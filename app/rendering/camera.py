@@ -201,9 +201,9 @@ def framing_bust(view: View, box: Floats, level: float | None, aspect: float) ->
     return view.framing(np.stack([*box[:2], height]), aspect, margin=1.08)
 
 
-def framing_points(view: View, points: Points, aspect: float) -> View:
-    """Return ``view`` of ``points``, shape (k, 3) [mm], with some of what lies round them."""
-    around = np.array([-_CLOSEST, _CLOSEST])
+def framing_points(view: View, points: Points, aspect: float, margin: float = _CLOSEST) -> View:
+    """Return ``view`` of ``points``, shape (k, 3) [mm], with a ``margin`` [mm] of what lies round them."""
+    around = np.array([-margin, margin])
     return view.framing(box_of(points) + around, aspect)
 
 

@@ -272,9 +272,12 @@ class Viewport(QWidget):
         self._fit = self.scene.framing_all
         self._go(self._fit(self._aspect()))
 
-    def frame_points(self, points: Points) -> None:
-        """Glide to places on the body, shape (k, 3) [mm], and keep them framed when the size changes."""
-        self._fit = lambda aspect: framing_points(self.scene.view, points, aspect)
+    def frame_points(self, points: Points, *margin: float) -> None:
+        """Glide to places on the body, shape (k, 3) [mm], and keep them framed when the size changes.
+
+        A ``margin`` [mm] round them is seen, or the usual one.
+        """
+        self._fit = lambda aspect: framing_points(self.scene.view, points, aspect, *margin)
         self._go(self._fit(self._aspect()))
 
     def glide_to(self, view: View) -> None:

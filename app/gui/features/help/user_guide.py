@@ -10,8 +10,8 @@ from app.gui.session.notifications import Notifications
 from app.i18n.catalog import language, tr
 
 PAGES = {
-    "scan": ("how-to/open-scan", "ja/screens#四つの手順"),
-    "landmarks": ("how-to/landmarks", "ja/screens#四つの手順"),
+    "scan": ("how-to/open-scan", "ja/screens#五つの手順"),
+    "landmarks": ("how-to/landmarks", "ja/screens#五つの手順"),
     "lines": ("how-to/lines", "ja/screens#ライン"),
     "model": ("reference/model-options", "ja/screens#ライン"),
     "garment": ("how-to/cut-list", "ja/screens#裁断"),

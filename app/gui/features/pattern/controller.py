@@ -35,6 +35,9 @@ if TYPE_CHECKING:
 
 STEP = "pattern"
 
+MARGIN = 15.0
+"""What is seen round a garment when its block is chosen [mm]."""
+
 
 class PatternController(QObject):
     """Show the pieces of the session's frame while the step is open; ``changed`` when there are others,
@@ -284,7 +287,7 @@ class PatternController(QObject):
         self.layer.show(seams, vertex_colours(pattern, ramps))
         self._framed = pattern.garment.block.name
         if self._framed != framed:
-            self._context.view.viewport.frame_points(seams.points)
+            self._context.view.viewport.frame_points(seams.points, MARGIN)
 
     # -- what is selected
 
