@@ -65,6 +65,7 @@ class PatternController(QObject):
         self.files, self.ways = PatternExport(context, self), WaysOut(context, self)
         panel.set_blocks([(each.name, block_title(each), block_about(each)) for each in built_in_blocks()])
         self._connect()
+        self._add_actions()
 
     def _connect(self) -> None:
         panel, view, layer, session = self.panel, self.view, self.layer, self._session
@@ -84,8 +85,28 @@ class PatternController(QObject):
             each.piece_chosen.connect(self.select_piece)
             each.seam_chosen.connect(self.select_seam)
         view.seam_hovered.connect(layer.hover)
+        view.theme_changed.connect(self._show_theme)
         layer.seam_hovered.connect(view.hover)
         panel.seam_card.walked.connect(self._walk)
+
+    def _add_actions(self) -> None:
+        """List the blocks in the menu of lines, so that each can be asked for by its name."""
+        do = self._context.actions
+        do.submenu("lines", "blocks", tr("Pattern pieces"))
+        for block in built_in_blocks():
+            action = do.add("blocks", block_title(block), of_document=True)
+            action.triggered.connect(lambda _=False, block=block: self._choose_and_show(block))
+        do.rule("blocks")
+        do.add("blocks", tr("Export pieces…"), do=self._export, of_document=True)
+
+    def _choose_and_show(self, block: Block) -> None:
+        self._context.navigation.show_step(STEP)
+        self.choose_block(block)
+
+    def _export(self) -> None:
+        self._context.navigation.show_step(STEP)
+        if self.is_current():
+            self.files.show()
 
     # -- what is decided
 
@@ -138,6 +159,9 @@ class PatternController(QObject):
         """Have the pieces of a frame made, if the step is open."""
         plan = self.plan
         if not self.is_open or plan is None:
+            return
+        if plan.block.needs_lower_trunk and frame.stages.lower is None and not self._session.is_converged:
+            self._show_state()  # that region is being built
             return
         final = self._session.is_converged and self.editing.trial is None
         if self.result is not None and final and self._is_of(frame, plan):
@@ -288,6 +312,10 @@ class PatternController(QObject):
         self._framed = pattern.garment.block.name
         if self._framed != framed:
             self._context.view.viewport.frame_points(seams.points, MARGIN)
+
+    def _show_theme(self) -> None:
+        self.layer.set_dark(tokens_of(self.view).dark)
+        self._draw_garment()
 
     # -- what is selected
 

@@ -60,6 +60,7 @@ class PiecesView(QWidget):
     piece_chosen = Signal(str)
     seam_chosen = Signal(str)
     seam_hovered = Signal(str)
+    theme_changed = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -263,6 +264,7 @@ class PiecesView(QWidget):
         super().changeEvent(event)
         if event.type() == QEvent.Type.PaletteChange:
             self._redraw()
+            self.theme_changed.emit()
 
     # -- painting
 
