@@ -102,8 +102,7 @@ def shortest_path(mesh: Mesh, start: Points, end: Points) -> Points:
     Only the skin near both is looked at: all places of a way of some length lie within the ellipsoid about
     its ends that this length spans. Raises LineError where there is no way.
     """
-    straight = float(np.linalg.norm(end - start))
-    span, wide = 1.15 * straight + 20.0, 1.5 * straight + 60.0
+    span = 1.5 * float(np.linalg.norm(end - start)) + 60.0
     to_ends = np.linalg.norm(mesh.vertices - start, axis=1) + np.linalg.norm(mesh.vertices - end, axis=1)
     while True:
         whole = bool((to_ends < span).all())
@@ -112,8 +111,7 @@ def shortest_path(mesh: Mesh, start: Points, end: Points) -> Points:
         except LineError:
             if whole:
                 raise
-            # The piece hangs together at a corner alone, or not at all.
-            span = wide if span < wide else np.inf
+            span = np.inf  # the piece hangs together at a corner alone, or not at all
             continue
         length = float(arc_length(way)[-1])
         if whole or length <= span:
