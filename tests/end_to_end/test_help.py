@@ -70,7 +70,13 @@ def test_f1_opens_the_page_that_fits_what_is_being_done(opened: list[str]) -> No
         window.start_controller.tour.end()
         go_everywhere(window)
         assert opened == [
-            *("how-to/open-scan", "how-to/landmarks", "how-to/lines", "how-to/measurements"),
+            *(
+                "how-to/open-scan",
+                "how-to/landmarks",
+                "how-to/lines",
+                "how-to/measurements",
+                "how-to/pattern",
+            ),
             *("how-to/cut-list", "reference/model-options", "how-to/report", "index"),
         ]
         opened.clear()

@@ -219,7 +219,7 @@ def test_every_choice_has_its_words_and_the_door_says_what_is_not_usual() -> Non
     elsewhere = {"scan", "lines", "own_lines", "traits", "placed", "unknown", "template"}
     # Measures and elastics have parts of their own, and are no choice of the model.
     elsewhere |= {"own_measures", "elastics", "tissue_stiffness", "customer", "worn_tight_mm", "calibration"}
-    elsewhere |= {"cup", "lower"}
+    elsewhere |= {"cup", "lower", "pattern"}
     assert {setting.key for setting in settings} == (set(values) - elsewhere) | LOWER_SETTINGS.keys()
     assert all(each.tip.endswith(".") and each.words(defaults()[each.key]) for each in settings)
     assert summary(values) == "Bonded · Elastic length · Net (paper)"

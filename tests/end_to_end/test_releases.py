@@ -15,7 +15,7 @@ from core.errors import ProjectError
 
 ROOT = Path(__file__).parents[2]
 RELEASES = ROOT / "tests" / "releases"
-NEW = ("tissue", "sag", "density", "posture", "cup", "lower")
+NEW = ("tissue", "sag", "density", "posture", "cup", "lower", "pattern")
 """What no released version writes yet."""
 
 PROJECTS = sorted(RELEASES.glob("*/*.busk"))
