@@ -63,7 +63,8 @@ class BreastMap:
         outward = np.cross(unit(upward.sum(axis=0) * [1.0, 1.0, 0.0]), up)
         outward *= np.sign(outward @ (self.rays[RAYS // 4, RAYS // 4] - self.apex))
         off = places - self.apex
-        return np.asarray(np.degrees(np.arctan2(off @ outward, off @ up)) % 360.0)
+        clock = np.degrees(np.arctan2(off @ outward, off @ up)) % 360.0
+        return np.where(clock < 360.0, clock, 0.0)  # a hair below 0 is rounded to 360
 
     def word(self, place: Points) -> str:
         """Return the place of a block that is nearest to ``place`` (3,) [mm], "root 205*0.4" or "apex"."""

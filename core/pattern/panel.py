@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -117,10 +117,7 @@ def cut_panels(
         cut = bridge(cut, np.concatenate([region.source[region.faces] for region in regions]))
         net, regions = replace(net, cut=cut), tuple(region.on(cut.vertices) for region in regions)
     steps = [spacing or spacing_of(region.area) for region in regions]
-    finest: dict[int, float] = {}
-    for region, step in zip(regions, steps, strict=True):
-        for piece in [run[0] for run in region.runs] + [slit[0] for slit in region.slits]:
-            finest[piece] = min(step, finest.get(piece, np.inf))
+    finest = _finest(regions, steps)
     beside = _kept_sides(on_skin, list(finest), kept)
     samples = {
         piece: _Samples.of(cut, net.pieces[piece], step, beside[piece][1] if piece in beside else None)
@@ -139,6 +136,15 @@ def cut_panels(
         )
         for panel, keys in parts
     )
+
+
+def _finest(regions: Sequence[SkinRegion], steps: Sequence[float]) -> dict[int, float]:
+    """Return the distance of points on each piece of border: that of the finer panel beside it [mm]."""
+    finest: dict[int, float] = {}
+    for region, step in zip(regions, steps, strict=True):
+        for piece in [run[0] for run in region.runs] + [slit[0] for slit in region.slits]:
+            finest[piece] = min(step, finest.get(piece, np.inf))
+    return finest
 
 
 _Key = tuple[int, bool]

@@ -5,8 +5,9 @@ Each is tried: the block is changed, cut again on the body, and all its pieces a
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -51,7 +52,7 @@ class Remedy:
 @dataclass(frozen=True, eq=False)
 class _Change:
     kind: str
-    message: Message
+    message: Callable[[str, str], Message]
     block: Block
     plans: tuple[str, ...]
 
@@ -99,7 +100,7 @@ def _tried(change: _Change, pattern: Pattern, drawing: SeamDrawing, vertices: Po
     left = max(tried.strains[flat.panel.name].within for flat in own)
     limit = min(tried.cloths[flat.panel.cloth].limit for flat in own)
     others = sum(not tried.fits(flat) for flat in tried.flats if flat not in own)
-    message = change.message.fill(left=f"{100.0 * left:.1f}", limit=f"{100.0 * limit:g}")
+    message = change.message(f"{100.0 * left:.1f}", f"{100.0 * limit:g}")
     return Remedy(change.kind, message, change.block, left, limit, all(map(tried.fits, own)), others)
 
 
@@ -121,9 +122,7 @@ def _cloths(pattern: Pattern, panel: Panel) -> Iterator[_Change]:
     for cloth in sorted(pattern.cloths.values(), key=lambda each: each.limit):
         if cloth.limit > max(own, 0.8 * needed):
             plans = tuple(replace(p, cloth=cloth.name) if p.name == name else p for p in block.panels)
-            message = Message(
-                "{cloth}: {left} % of {limit} %.", cloth=ClothName(cloth.title), left="", limit=""
-            )
+            message = partial(_cloth_message, cloth.title)
             yield _Change(CLOTH, message, replace(block, panels=plans), (name,))
 
 
@@ -172,13 +171,7 @@ def _with_dart(block: Block, plan: PanelPlan, dart: Dart, breast: BreastMap) -> 
     name = _new_name(f"{plan.name} dart", [seam.name for seam in block.seams])
     end = breast.word(dart.end)
     seam = Seam(name, WAY, each=True, places=(_start_word(dart), end), slit=True)
-    message = Message(
-        "A dart from the {seam} at {clock}\N{DEGREE SIGN}: {left} % of {limit} %.",
-        seam=SeamName(_plan_name(dart.seam)),
-        clock=f"{_clock(dart):.0f}",
-        left="",
-        limit="",
-    )
+    message = partial(_dart_message, dart)
     return _Change(DART, message, replace(block, seams=(*block.seams, seam)), (plan.name,))
 
 
@@ -209,15 +202,33 @@ def _with_seam(
     name = _new_name(f"{plan.name} seam", [seam.name for seam in block.seams])
     seams = (*block.seams, Seam(name, WAY, each=True, places=tuple(stops)))
     changed = replace(block, seams=seams, panels=(*block.panels[:at], *plans, *block.panels[at + 1 :]))
-    message = Message(
-        "A seam through the {piece} from the {seam} at {clock}\N{DEGREE SIGN}: {left} % of {limit} %.",
-        piece=PieceName(plan.name),
+    message = partial(_seam_message, plan.name, dart)
+    yield _Change(SEAM, message, changed, names)
+
+
+def _cloth_message(cloth: str, left: str, limit: str) -> Message:
+    return Message("{cloth}: {left} % of {limit} %.", cloth=ClothName(cloth), left=left, limit=limit)
+
+
+def _dart_message(dart: Dart, left: str, limit: str) -> Message:
+    return Message(
+        "A dart from the {seam} at {clock}\N{DEGREE SIGN}: {left} % of {limit} %.",
         seam=SeamName(_plan_name(dart.seam)),
         clock=f"{_clock(dart):.0f}",
-        left="",
-        limit="",
+        left=left,
+        limit=limit,
     )
-    yield _Change(SEAM, message, changed, names)
+
+
+def _seam_message(piece: str, dart: Dart, left: str, limit: str) -> Message:
+    return Message(
+        "A seam through the {piece} from the {seam} at {clock}\N{DEGREE SIGN}: {left} % of {limit} %.",
+        piece=PieceName(piece),
+        seam=SeamName(_plan_name(dart.seam)),
+        clock=f"{_clock(dart):.0f}",
+        left=left,
+        limit=limit,
+    )
 
 
 def _distance(curve: Points, place: Points) -> float:

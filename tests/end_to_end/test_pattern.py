@@ -80,6 +80,29 @@ def test_a_block_is_chosen_edited_and_every_edit_is_undone_by_name(mannequin: Pa
     run_undrawn([str(mannequin)], script)
 
 
+def test_a_piece_that_does_not_fit_is_offered_ways_out(mannequin: Path) -> None:
+    def script(window: MainWindow) -> Script:
+        yield from chosen(window, "one-part-cup")
+        controller, card = window.pattern_controller, window.pattern.piece_card
+        assert not controller.result.pattern.fits_cloths
+        controller.select_piece("cup left")
+        assert card.look_for.isVisible()
+        card.chart.click()
+        yield lambda: card.darts.isVisible() and not window.jobs.at_work()
+        assert card.darts.chart.best.within < controller.result.pattern.strains["cup left"].within
+        card.look_for.click()
+        yield lambda: bool(controller.ways._found)
+        best = controller.ways._found[0]
+        assert best.fits
+        card.way_chosen.emit(0)
+        assert window.session.design.pattern.block == best.block
+        yield current(window)
+        window.session.undo_stack.undo()
+        assert window.session.design.pattern.block == find_block("one-part-cup")
+
+    run_undrawn([str(mannequin)], script)
+
+
 def test_a_seam_is_dragged_by_its_point_on_the_body(mannequin: Path) -> None:
     def script(window: MainWindow) -> Script:
         yield from chosen(window, "two-part-cup")

@@ -45,7 +45,7 @@ def test_settings_are_read_with_hyphens_and_underscores(pairs: list[str], fields
 
 def test_every_choice_of_the_design_can_be_set() -> None:
     not_settings = {"scan", "placed", "lines", "own_lines", "own_measures", "traits", "volume", "unknown"}
-    not_settings |= {"elastics", "customer", "worn_tight_mm", "calibration", "cup", "lower"}
+    not_settings |= {"elastics", "customer", "worn_tight_mm", "calibration", "cup", "lower", "pattern"}
     of_lower_trunk = {field.name for field in fields(LowerTrunk)} - {"lines", "traits"}
     assert set(LOWER_SETTINGS.values()) == set(LOWER_RANGES) == of_lower_trunk
     named = {*WORDS, *NUMBERS, *SWITCHES} - LOWER_SETTINGS.keys()
