@@ -1,4 +1,4 @@
-"""Advice on a pattern for the command line: where a dart helps, and ways out for pieces over their limit."""
+"""Advice on a pattern for the command line: dart charts, and fixes for pieces over their limit."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from core.errors import PatternError
 from core.geometry.mesh import Points
 from core.messages import Message
 from core.pattern.garment import Pattern
+from core.pattern.piece_fixes import chart_of, piece_fixes
 from core.pattern.places import BodyPlaces
-from core.pattern.remedies import chart_of, remedies
 from core.pattern.seam_curves import SeamDrawing
 from core.pipeline.build import Stages
 
@@ -33,11 +33,11 @@ def dart_lines(pattern: Pattern, stages: Stages, piece: str) -> Iterator[str]:
     yield from table_lines(rows)
 
 
-def remedy_lines(pattern: Pattern, stages: Stages, worn: Points) -> Iterator[str]:
-    """Yield ways out for each piece that its cloth does not take up, measured."""
+def fix_lines(pattern: Pattern, stages: Stages, worn: Points) -> Iterator[str]:
+    """Yield verified fixes for each piece that exceeds the limit of its cloth."""
     drawing = SeamDrawing(BodyPlaces.of(stages))
     for flat in pattern.flats:
         if not pattern.fits(flat):
-            for remedy in remedies(pattern, flat.panel.name, drawing, worn):
-                fits = "fits" if remedy.fits else "does not fit"
-                yield f"{flat.panel.name}: {remedy.message} ({fits})"
+            for fix in piece_fixes(pattern, flat.panel.name, drawing, worn):
+                fits = "fits" if fix.fits else "does not fit"
+                yield f"{flat.panel.name}: {fix.message} ({fits})"

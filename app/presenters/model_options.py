@@ -35,7 +35,8 @@ class Choice:
 class Amount:
     """A field ``key`` of the design that is a number, shown ``scale`` times as large with its ``unit``.
 
-    ``limits`` are the least and the largest number; without them any can be typed.
+    ``limits`` are the least and the largest number; without them any can be typed. An ``optional`` one may
+    be left empty.
     """
 
     key: str
@@ -45,12 +46,20 @@ class Amount:
     scale: float
     digits: int
     limits: tuple[float, float] = (-math.inf, math.inf)
+    optional: bool = False
 
     def words(self, value: float | None) -> str:
         """Return a value as it is written."""
         if value is None:
             return tr("automatic")
         return f"{number(self.scale * value, self.digits)} {self.unit}".strip()
+
+
+def length_amount(
+    key: str, title: str, tip: str, limits: tuple[float, float], *, optional: bool = False
+) -> Amount:
+    """Return an amount of tenths of a millimetre, shown in the unit in use; ``limits`` [mm]."""
+    return Amount(key, title, tip, length_unit(), shown_value(1.0), shown_digits(1), limits, optional)
 
 
 @dataclass(frozen=True)
@@ -337,7 +346,7 @@ def _gain() -> Amount:
         "Set the volume force per volume error of conventional control, from 0 to 10. Leave empty for 97 % "
         "of the gain at which oscillation starts."
     )
-    return Amount("gain", tr("Conventional gain"), tip, "", 1.0, 2, (0.0, 10.0))
+    return Amount("gain", tr("Conventional gain"), tip, "", 1.0, 2, (0.0, 10.0), optional=True)
 
 
 def _belly_height() -> Amount:

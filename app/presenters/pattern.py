@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from app.presenters.messages import own_title, render, sided_title
 from core.document.block import Block
 from core.messages import BlockName, ClothName, Message, PieceName, SeamName
-from core.pattern.garment import Pattern
+
+if TYPE_CHECKING:
+    from core.pattern.garment import Pattern
 
 
 @dataclass(frozen=True)

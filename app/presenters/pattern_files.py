@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -55,7 +56,7 @@ ENDINGS = {
 """Kinds of files and the endings of their names."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class CutPattern:
     """A pattern with the ``pieces`` and ``strips`` to cut, and the ``elastics`` of its edges.
 
@@ -72,6 +73,7 @@ class CutPattern:
     stages: Stages
     worn: Points
 
+    @cached_property
     def shapes(self) -> tuple[CutPiece, ...]:
         """Return all pieces and strips with their allowances. Raises PatternError."""
         return tuple(cut_piece(piece) for piece in (*self.pieces, *self.strips))
@@ -115,7 +117,7 @@ def pattern_or_reason(stages: Stages, vertices: Points) -> Pattern | Message | N
 
 def tiling_of(cut: CutPattern, paper: str) -> Tiling:
     """Return the pieces on sheets of one of PAPERS, or on one ``SHEET``. Raises PatternError."""
-    shapes = cut.shapes()
+    shapes = cut.shapes
     return whole_sheet(shapes, WIDTH) if paper == SHEET else lay_out_on_tiles(shapes, PAPERS[paper])
 
 
@@ -133,7 +135,7 @@ def write_pattern(path: Path, kind: str, cut: CutPattern, heading: Heading, foun
     elif kind in ("pieces", "seams"):
         (write_pieces if kind == "pieces" else write_seams)(path, (*cut.pieces, *cut.strips))
     else:
-        layout = lay_out(cut.shapes(), WIDTH)
+        layout = lay_out(cut.shapes, WIDTH)
         if kind.startswith("dxf"):
             write_pattern_dxf(path, layout, heading, kind.removeprefix("dxf-"))
         elif kind == "svg":

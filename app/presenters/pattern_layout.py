@@ -5,11 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from core.document.block import without_side
 from core.geometry.mesh import Faces, Floats, Indices
-from core.pattern.garment import Pattern
+
+if TYPE_CHECKING:
+    from core.pattern.garment import Pattern
 
 GAP = 14.0
 """Between pieces [mm]."""
@@ -52,7 +56,7 @@ def piece_shapes(pattern: Pattern) -> tuple[PieceShape, ...]:
     """Return the pieces of a pattern as they are drawn."""
     every = np.concatenate(pattern.places)
     axis = 0.5 * (every[:, :2].min(axis=0) + every[:, :2].max(axis=0))
-    back = {(fit.seam.panels[1], fit.seam.sides[1]) for fit in pattern.matched.fits}
+    back = {(seam.panels[1], seam.sides[1]) for seam in pattern.matched.seams}
     shapes = []
     for k, (flat, places) in enumerate(zip(pattern.flats, pattern.places, strict=True)):
         x, y, z = places.mean(axis=0)
@@ -98,7 +102,7 @@ def _units(shapes: Sequence[PieceShape]) -> list[list[int]]:
     """Return what stays beside each other, from above: her right and her left, or a piece over the middle."""
     pairs: dict[str, list[int]] = {}
     for k, shape in enumerate(shapes):
-        pairs.setdefault(shape.name.removesuffix(" left").removesuffix(" right"), []).append(k)
+        pairs.setdefault(without_side(shape.name)[0], []).append(k)
     units = [sorted(pair, key=lambda k: shapes[k].middle[0]) for pair in pairs.values()]
     return sorted(units, key=lambda unit: -max(shapes[k].middle[1] for k in unit))
 

@@ -48,6 +48,7 @@ class GarmentActor:
         self._plotter, self._ratio = plotter, pixel_ratio
         self._dark = False
         self._faces: Faces | None = None
+        self._drawn: GarmentDrawing | None = None
         self._sheet: pv.PolyData | None = None
         self._names: list[str] = []
 
@@ -57,13 +58,17 @@ class GarmentActor:
         return bool(self._names)
 
     def show(self, drawn: GarmentDrawing) -> None:
-        """Show a garment in place of the former one."""
-        normals = Mesh(drawn.points, drawn.faces).vertex_normals
-        self._lay(drawn, normals)
-        for name in self._names[1:]:
+        """Show a garment in place of the former one; cloth and seams of the same points and colours stay."""
+        former, self._drawn = self._drawn, drawn
+        same = former and former.points is drawn.points and former.colours is drawn.colours
+        for name in self._names[2 if same else 1 :]:
             self._plotter.remove_actor(name, reset_camera=False, render=False)
-        self._names = self._names[:1]
-        self._lines("garment seams", drawn.seams, _THIN, SEAM[self._dark])
+        if same:
+            self._names = self._names[:2]
+        else:
+            self._lay(drawn, Mesh(drawn.points, drawn.faces).vertex_normals)
+            self._names = self._names[:1]
+            self._lines("garment seams", drawn.seams, _THIN, SEAM[self._dark])
         self._lines("garment selected", drawn.selected, _THICK, SELECTED[self._dark])
         self._dots("garment handles", drawn.handles, "#FFFFFF")
         self._dots("garment knob", drawn.knob, SELECTED[self._dark])
@@ -72,11 +77,11 @@ class GarmentActor:
         """Remove the garment."""
         for name in self._names:
             self._plotter.remove_actor(name, reset_camera=False, render=False)
-        self._names, self._faces, self._sheet = [], None, None
+        self._names, self._faces, self._sheet, self._drawn = [], None, None, None
 
     def set_dark(self, dark: bool) -> None:
         """Paint for one theme from the next showing on."""
-        self._dark = dark
+        self._dark, self._drawn = dark, None
 
     def _lay(self, drawn: GarmentDrawing, normals: Points) -> None:
         places = drawn.points + _OFF * normals

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from PySide6.QtGui import QImage
 
 from core.export.report_data import Report
 from core.messages import Message
-from core.pattern.garment import Pattern
+
+if TYPE_CHECKING:
+    from core.pattern.garment import Pattern
 
 SHOTS = ("front before", "front after", "side before", "side after")
 """The pictures of a sheet, in the order in which they stand."""

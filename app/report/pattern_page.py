@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,7 +20,9 @@ from app.report.painter import PagePainter, elide
 from app.report.tables import HALF, bullet, heading, paragraph
 from core.geometry.mesh import Floats
 from core.messages import Message
-from core.pattern.garment import Pattern
+
+if TYPE_CHECKING:
+    from core.pattern.garment import Pattern
 
 HIGH = 128.0
 """Height of the picture of the pieces [mm]."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from core.document.document_limits import check_counts
 from core.document.printable_name import is_blank, is_printable, repeated
@@ -76,7 +76,8 @@ class Seam:
 class PanelPlan:
     """A panel of a block: the skin round the place ``seed`` up to the seams, and the name of its ``cloth``.
 
-    Its grain line runs up on the body, turned by ``turn`` [degrees], counter-clockwise seen from outside.
+    Its grain line runs up on the body, turned by ``turn`` [degrees]: counter-clockwise seen from outside, on
+    the right side of the body clockwise.
     """
 
     name: str
@@ -174,9 +175,27 @@ class Block:
             "root" in word or "apex" in word for word in own
         )
 
+    def with_seam(self, seam: Seam) -> Block:
+        """Return the block with another seam of the same name."""
+        return replace(self, seams=tuple(seam if each.name == seam.name else each for each in self.seams))
+
+    def with_own_sides(self, name: str, apart: bool) -> Block:
+        """Return the block in which each side of a seam has places of its own, or the left one's for both.
+
+        Raises KeyError for an unknown name.
+        """
+        seam = self.seam(name)
+        return self.with_seam(replace(seam, right=seam.places if apart else ()))
+
     def seam(self, name: str) -> Seam:
         """Return a seam by the name of its curve, with or without a side. Raises KeyError."""
         for seam in self.seams:
             if name == seam.name or name in {own for own, _ in seam.named()}:
                 return seam
         raise KeyError(name)
+
+
+def without_side(name: str) -> tuple[str, str]:
+    """Return the name of a piece or seam without its side, and the side, "" for one over the middle."""
+    side = next((each for each in SIDES if name.endswith(f" {each}")), "")
+    return name.removesuffix(f" {side}"), side

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from core.document.block import without_side
 from core.messages import Message
-from core.pattern.garment import Pattern, without_side
+from core.pattern.garment import Pattern
 from core.pattern.piece import NO_ELASTICS, EdgeElastic, SideKey
 
 

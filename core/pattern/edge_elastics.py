@@ -8,10 +8,11 @@ from itertools import pairwise
 
 import numpy as np
 
+from core.document.block import without_side
 from core.garment.cut_list import CutList, CutRow
 from core.geometry.mesh import Floats, Points
 from core.geometry.plane_sections import arc_length
-from core.pattern.garment import Pattern, without_side
+from core.pattern.garment import Pattern
 from core.pattern.piece import EdgeElastic, SideKey
 
 QUARTERS = (0.0, 0.25, 0.5, 0.75)

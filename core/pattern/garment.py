@@ -8,7 +8,7 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from core.document.block import RING, ROOT, Block, Seam
+from core.document.block import RING, ROOT, Block, Seam, without_side
 from core.document.cloth import Cloth, Pair
 from core.document.garment_pattern import ALLOWANCE, GarmentPattern
 from core.geometry.mesh import Points
@@ -94,14 +94,14 @@ def surface_curves(curves: Iterable[SeamCurve]) -> tuple[SurfaceCurve, ...]:
 
 
 def panel_seeds(drawing: SeamDrawing, block: Block, curves: Sequence[SeamCurve]) -> tuple[PanelSeed, ...]:
-    """Return a place in each panel of a block whose seams are ``curves``. Raises PatternError."""
+    """Return the seed of each panel of a block whose seams are ``curves``. Raises PatternError."""
     levels, drawn = drawing.levels(block), {each.name: each.points for each in curves}
     return tuple(
         PanelSeed(
             f"{plan.name} {side}".rstrip(),
             drawing.places.place(plan.seed, side, levels, drawn),
             plan.cloth,
-            plan.turn,
+            -plan.turn if side == "right" else plan.turn,
         )
         for plan in block.panels
         for side in (SIDES if plan.each else ("",))
@@ -159,12 +159,12 @@ class Pattern:
     def _problem_of(self, flat: FlatPanel) -> Message | None:
         cloth, within = self.cloths[flat.panel.cloth], self.strains[flat.panel.name].within
         if flat.is_folded:
-            return Message("Cannot be laid flat without a fold.")
+            return Message("Cannot be flattened without folds.")
         if flat.overlaps:
-            return Message("Overlaps itself when laid flat.")
+            return Message("Overlaps itself when flattened.")
         if within > cloth.limit:
             return Message(
-                "Strain of {strain} % on 95 % of the area; {cloth} takes up {limit} %.",
+                "Strain of {strain} % on 95 % of the area exceeds {limit} %, the limit of {cloth}.",
                 strain=f"{100.0 * within:.1f}",
                 cloth=ClothName(cloth.title),
                 limit=f"{100.0 * cloth.limit:g}",
@@ -250,9 +250,3 @@ class Pattern:
             kind, points = without_side(own.name)[0], flat.points[own.points]
             sides.append(Side(kind, points, width, notches, own.partner, elastic))
         return Piece(name, side, self.cloths[panel.cloth].title, 1, tuple(sides))
-
-
-def without_side(name: str) -> tuple[str, str]:
-    """Return the name of a piece or seam without its side, and the side, "" for one over the middle."""
-    side = next((each for each in SIDES if name.endswith(f" {each}")), "")
-    return name.removesuffix(f" {side}"), side

@@ -119,6 +119,11 @@ class Matched:
     _misfits: Floats
     _system: _System | None
 
+    @property
+    def off(self) -> float:
+        """Return the largest difference of length that is left over a stretch of any seam [mm]."""
+        return float(np.abs(self._misfits).max(initial=0.0))
+
     @cached_property
     def alone(self) -> tuple[FlatPanel, ...]:
         """Return the pieces each flattened by itself: what seams cost is the difference of strain."""

@@ -2,26 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
-from core.document.block import RING, WAY, Block, Seam
+from core.document.block import RING, WAY, Block
 from core.geometry.mesh import Points
 from core.landmarks.types import SIDES
 from core.pattern.place_words import moved_level, moved_span, moved_word, seam_handles
-from core.pattern.seam_curves import SeamDrawing
+from core.pattern.seam_curves import SeamCurve, SeamDrawing
 
 LEVEL = 2
 """The number of the handle in the middle of a ring, which moves its level."""
 
 
-def handles_of(drawing: SeamDrawing, block: Block, curve: str) -> list[tuple[int, Points]]:
-    """Return the handles of a curve on the body at rest: numbers and places (3,) [mm].
+def handles_of(
+    drawing: SeamDrawing, block: Block, curve: str, curves: Sequence[SeamCurve]
+) -> list[tuple[int, Points]]:
+    """Return the handles of a curve on the original body: numbers and positions (3,) [mm].
 
-    Those of a way are its places; a root and a ring have their ends, a ring its level (``LEVEL``) too. Raises
-    PatternError, LineError for a body that the block does not fit, KeyError for an unknown curve.
+    ``curves`` are those of the block on that body. The handles of a way are its places; a root and a ring
+    have their ends, a ring its level (``LEVEL``) too. Raises PatternError, KeyError for an unknown curve.
     """
     seam, side = block.seam(curve), side_of(block, curve)
-    drawn = {each.name: each.points for each in drawing.curves(block)}
+    drawn = {each.name: each.points for each in curves}
     found = seam_handles(drawing, seam, side, drawing.levels(block), drawn)
     if seam.kind == RING:
         points = drawn[curve]
@@ -44,22 +47,11 @@ def moved_block(drawing: SeamDrawing, block: Block, curve: str, handle: int, pla
         return replace(block, levels=moved)
     if seam.kind != WAY:
         span = moved_span(drawing.places, seam, handle, side, levels, place)
-        return with_seam(block, replace(seam, span=span))
+        return block.with_seam(replace(seam, span=span))
     words = list(seam.places_of(side))
     words[handle] = moved_word(drawing.places, words[handle], side, levels, place)
     own = bool(seam.right) and side == "right"
-    return with_seam(block, replace(seam, **{"right" if own else "places": tuple(words)}))  # type: ignore[arg-type]
-
-
-def with_seam(block: Block, seam: Seam) -> Block:
-    """Return the block with another seam of the same name."""
-    return replace(block, seams=tuple(seam if each.name == seam.name else each for each in block.seams))
-
-
-def with_own_sides(block: Block, name: str, apart: bool) -> Block:
-    """Return the block in which each side of a seam has places of its own, or the left one's for both."""
-    seam = block.seam(name)
-    return with_seam(block, replace(seam, right=seam.places if apart else ()))
+    return block.with_seam(replace(seam, **{"right" if own else "places": tuple(words)}))  # type: ignore[arg-type]
 
 
 def side_of(block: Block, curve: str) -> str:

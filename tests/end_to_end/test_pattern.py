@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from pdf_tools import Pdf
-from PySide6.QtCore import QPointF, Qt
+from PySide6.QtCore import QEvent, QPointF, Qt
+from PySide6.QtGui import QKeyEvent
 from PySide6.QtTest import QTest
 from window_tools import Script, drag, run_main, run_undrawn, settled
 
@@ -80,21 +81,21 @@ def test_a_block_is_chosen_edited_and_every_edit_is_undone_by_name(mannequin: Pa
     run_undrawn([str(mannequin)], script)
 
 
-def test_a_piece_that_does_not_fit_is_offered_ways_out(mannequin: Path) -> None:
+def test_a_piece_that_does_not_fit_gets_fixes_suggested(mannequin: Path) -> None:
     def script(window: MainWindow) -> Script:
         yield from chosen(window, "one-part-cup")
         controller, card = window.pattern_controller, window.pattern.piece_card
         assert not controller.result.pattern.fits_cloths
         controller.select_piece("cup left")
-        assert card.look_for.isVisible()
+        assert card.suggest.isVisible()
         card.chart.click()
         yield lambda: card.darts.isVisible() and not window.jobs.at_work()
         assert card.darts.chart.best.within < controller.result.pattern.strains["cup left"].within
-        card.look_for.click()
-        yield lambda: bool(controller.ways._found)
-        best = controller.ways._found[0]
+        card.suggest.click()
+        yield lambda: bool(controller.fixes._found)
+        best = controller.fixes._found[0]
         assert best.fits
-        card.way_chosen.emit(0)
+        card.fix_chosen.emit(0)
         assert window.session.design.pattern.block == best.block
         yield current(window)
         window.session.undo_stack.undo()
@@ -145,6 +146,40 @@ def test_a_seam_is_dragged_by_its_point_on_the_body(mannequin: Path) -> None:
     run_main([str(mannequin)], script)
 
 
+def test_escape_is_taken_where_a_seam_is_selected_alone(mannequin: Path) -> None:
+    def script(window: MainWindow) -> Script:
+        yield from chosen(window, "one-part-cup")
+        controller, canvas = window.pattern_controller, window.pattern_controller.layer._canvas
+        escape = QKeyEvent(QEvent.Type.KeyPress, Qt.Key.Key_Escape, Qt.KeyboardModifier.NoModifier)
+        enter = QKeyEvent(QEvent.Type.KeyPress, Qt.Key.Key_Return, Qt.KeyboardModifier.NoModifier)
+        hand = controller.layer.hand
+        assert not hand.eventFilter(canvas, escape), "Esc means what it means elsewhere"
+        controller.select_seam("neckline left")
+        assert not hand.eventFilter(canvas, enter)
+        assert hand.eventFilter(canvas, escape)
+        assert controller.seam == ""
+
+    run_undrawn([str(mannequin)], script)
+
+
+def test_a_cancelled_computation_does_not_keep_back_the_next(mannequin: Path) -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        window.navigation.show_step("pattern")
+        window.pattern.block_doors["two-part-cup"].click()
+        controller, jobs = window.pattern_controller, window.jobs
+        assert controller.worker.at_work
+        jobs.leave(controller.worker._job)
+        assert not controller.worker.at_work
+        assert controller.result is None
+        assert window.pattern.verdict.text() == "The computation of the pieces was cancelled."
+        controller.choose_block(find_block("one-part-cup"))
+        yield current(window)
+        assert controller.result.pattern.garment.block.name == "one-part-cup"
+
+    run_undrawn([str(mannequin)], script)
+
+
 def test_the_pieces_follow_a_line_and_are_not_exported_meanwhile(mannequin: Path) -> None:
     def script(window: MainWindow) -> Script:
         yield from chosen(window, "one-part-cup")
@@ -180,7 +215,8 @@ def test_pieces_are_exported_with_a_preview_and_kept_in_the_project(
             window.pattern.export.click()
             dialog = controller.files.dialog
             assert dialog is not None
-            assert dialog.preview.count > 1, "an overview, and tiles"
+            assert not dialog.save.isEnabled(), "the pages are laid out in the background"
+            yield lambda dialog=dialog: dialog.preview.count > 1  # an overview, and tiles
             dialog.kinds[kind].click()
             target.append(tmp_path / name)
             dialog.save.click()
@@ -214,7 +250,7 @@ def test_a_block_that_the_scan_has_no_room_for_says_why(mannequin: Path) -> None
         window.navigation.show_step("pattern")
         before = window.session.frame
         window.pattern.block_doors["brief"].click()
-        yield lambda: bool(controller._refused) or window.notices.notice() is not None
+        yield lambda: bool(controller._failure) or window.notices.notice() is not None
         assert controller.result is None
         assert not window.pattern.export.isEnabled()
         assert window.session.frame.stages.body is before.stages.body, "the body stays"

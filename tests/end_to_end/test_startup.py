@@ -23,6 +23,7 @@ from app.gui.widgets import first_paint
 
 ROOT = Path(__file__).parents[2]
 LATER = ("pyvista", "vtkmodules", "pyvistaqt", "matplotlib", "PIL", "ezdxf", "trimesh", "numba")
+LATER += ("shapely", "core.pattern.garment")
 LATER += ("scipy.interpolate", "scipy.optimize", "app.rendering.scene", "app.rendering.offscreen")
 
 UNTIL_PAINTED = f"""

@@ -12,7 +12,7 @@ from pathlib import Path
 from app.cli.design import design_of
 from app.cli.options import add_lines, add_scan
 from app.cli.output import DONE, finish, table_lines
-from app.cli.pattern_advice import dart_lines, remedy_lines
+from app.cli.pattern_advice import dart_lines, fix_lines
 from app.cli.solved_design import SolvedDesign, solve_design
 from app.presenters.pattern import piece_rows, seam_rows
 from app.presenters.pattern_files import SHEET, CutPattern, cut_pattern, tiling_of, write_pattern
@@ -49,9 +49,9 @@ def add_options(parser: ArgumentParser) -> None:
     parser.add_argument("--cloth", action="append", metavar="PIECE=CLOTH", help=cloth)
     allowance = "allowance of seams without their own (default: that of the project, or 7)"
     parser.add_argument("--allowance", type=float, metavar="MM", help=allowance)
-    parser.add_argument("--dart-chart", metavar="PIECE", help="print where a dart helps: 'cup left'")
-    out = "print ways out for pieces over their limit, each tried: a dart, another cloth, one more seam"
-    parser.add_argument("--ways-out", action="store_true", help=out)
+    parser.add_argument("--dart-chart", metavar="PIECE", help="print the dart chart of a piece: 'cup left'")
+    fixes = "print verified fixes for pieces over their limit: a dart, another cloth, one more seam"
+    parser.add_argument("--fixes", action="store_true", help=fixes)
     strips = "add straps and bands of the cut list as pieces, apart from elastics of edges"
     parser.add_argument("--strips", action="store_true", help=strips)
     _add_files(parser)
@@ -94,8 +94,8 @@ def run(options: Namespace) -> int:
     lines = [*solved.verdict, "", *_text(cut), *_write(cut, solved, options)]
     if options.dart_chart:
         lines += ["", *dart_lines(pattern, shown.stages, options.dart_chart)]
-    if options.ways_out:
-        lines += ["", *remedy_lines(pattern, shown.stages, worn_skin(shown.stages, shown.body.vertices))]
+    if options.fixes:
+        lines += ["", *fix_lines(pattern, shown.stages, worn_skin(shown.stages, shown.body.vertices))]
     return finish("\n".join(lines), solved.converged and cut.pattern.fits_cloths, solved.warnings)
 
 

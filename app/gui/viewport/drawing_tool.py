@@ -33,8 +33,9 @@ def keys_in_words() -> list[tuple[str, str]]:
 class DrawingTool(QObject):
     """Listens before the pointer of ``view`` does, while it is ``at_work``.
 
-    ``clicked`` and ``hovered`` carry places on the canvas, ``requested`` one of: keep, back, leave. What
-    ``grabs`` takes hold of is ``dragged``, then ``dropped``; any other drag is left to the view.
+    ``clicked`` and ``hovered`` carry places on the canvas, ``requested`` one of: keep, back, leave; of these
+    only what it ``takes``. What ``grabs`` takes hold of is ``dragged``, then ``dropped``; any other drag is
+    left to the view.
     """
 
     clicked = Signal(QPointF)
@@ -48,6 +49,7 @@ class DrawingTool(QObject):
         self._view, self._canvas = view, canvas
         self.at_work = False
         self.grabs: Callable[[QPointF], bool] = lambda _: False
+        self.takes: Callable[[str], bool] = lambda _: True
         self._pressed: QMouseEvent | None = None
         self._holds = self._passing = False
 
@@ -70,9 +72,12 @@ class DrawingTool(QObject):
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Take clicks on the canvas and the keys of the hand, wherever in the view the keyboard is."""
         if isinstance(event, QKeyEvent) and event.key() in _KEYS:
+            request = _KEYS[Qt.Key(event.key())]
+            if not self.takes(request):
+                return False
             event.accept()  # of a shortcut: the key is wanted here
             if event.type() == QEvent.Type.KeyPress:
-                self.requested.emit(_KEYS[Qt.Key(event.key())])
+                self.requested.emit(request)
             return event.type() != QEvent.Type.KeyRelease
         if watched is self._canvas and isinstance(event, QMouseEvent) and not self._passing:
             return self._mouse(event)

@@ -159,7 +159,7 @@ class AmountEdit(InlineEdit):
         return "" if self._value is None else self._plain(self._value)
 
     def _read(self, text: str) -> float | None:
-        if not text.strip() and self._amount.key == "gain":
+        if not text.strip() and self._amount.optional:
             return None
         figure, (low, high) = read_number(text), self._amount.limits
         if figure is None:

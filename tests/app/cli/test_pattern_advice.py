@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
-from app.cli.pattern_advice import dart_lines, remedy_lines
+from app.cli.pattern_advice import dart_lines, fix_lines
 from core.errors import PatternError
 from core.pattern.block_library import find_block
 from core.pattern.cloth_library import built_in
@@ -43,4 +43,4 @@ def test_a_piece_that_is_not_there_is_refused_with_those_that_are(stages: Stages
 def test_pieces_that_fit_need_no_way_out(stages: Stages) -> None:
     found = pattern(stages, "long-line-band")
     assert found.fits_cloths
-    assert not list(remedy_lines(found, stages, stages.body.smoothed.vertices))
+    assert not list(fix_lines(found, stages, stages.body.smoothed.vertices))

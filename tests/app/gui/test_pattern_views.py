@@ -99,7 +99,7 @@ def test_the_chart_of_darts_runs_as_the_body_is_seen(qtbot: QtBot, side: str, ri
     view.show()
     view.show_chart(chart(side), 0.08)
     assert view.dart.clock == 180.0, "the least strain"
-    assert "leaves 6.0 %" in view.words()
+    assert "strain 6.0 %" in view.words()
     chosen: list[Dart] = []
     view.chosen.connect(chosen.append)
     QTest.mouseClick(view, Qt.MouseButton.LeftButton, pos=QPoint(250, 95))

@@ -33,7 +33,8 @@ def test_pieces_have_their_figures_and_the_reason_why_they_do_not_fit(cup: Patte
     assert (upper.fits, upper.reason) == (True, "")
     assert not lower.fits
     assert lower.reason == (
-        f"Strain of {lower.strain_percent:.1f} % on 95 % of the area; Cup tricot, stable takes up 8 %."
+        f"Strain of {lower.strain_percent:.1f} % on 95 % of the area exceeds 8 %, "
+        "the limit of Cup tricot, stable."
     )
     assert all(row.fits == (row.strain_percent <= row.limit_percent) for row in rows.values())
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -153,3 +154,16 @@ def test_narrow_tips_come_to_rest_in_few_turns(built: Built, sample: str, turns:
         assert fit.off < 0.02
     for one, other in zip(warm.flats, afresh.flats, strict=True):
         assert np.abs(one.points - other.points).max() < 0.2
+
+
+def test_a_grain_line_is_rotated_as_its_mirror_image_on_the_right(built: Built) -> None:
+    stages, block = built("mannequin"), find_block("one-part-cup")
+    block = replace(block, panels=tuple(replace(each, turn=30.0) for each in block.panels))
+    found = cut_garment(drawing(stages), block).flat(stages.body.smoothed.vertices, CLOTHS)
+    slopes = {}
+    for flat, places in zip(found.flats, found.places, strict=True):
+        across_and_up = places[:, [0, 2]] - places[:, [0, 2]].mean(axis=0)
+        slope, height = np.linalg.lstsq(across_and_up, flat.points[:, 1] - flat.points[:, 1].mean())[0]
+        slopes[flat.panel.name] = np.degrees(np.arctan2(slope, height))
+    assert slopes["cup left"] == pytest.approx(-slopes["cup right"], abs=8.0)
+    assert abs(slopes["cup left"]) > 15.0

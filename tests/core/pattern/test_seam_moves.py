@@ -8,10 +8,12 @@ from functools import cache
 import numpy as np
 import pytest
 
+from core.document.block import Block
+from core.geometry.mesh import Points
 from core.pattern.block_library import find_block
 from core.pattern.places import BodyPlaces
 from core.pattern.seam_curves import SeamDrawing
-from core.pattern.seam_moves import LEVEL, handles_of, moved_block, with_own_sides
+from core.pattern.seam_moves import LEVEL, handles_of, moved_block
 from core.pipeline.build import Stages
 
 Built = Callable[[str], Stages]
@@ -23,13 +25,17 @@ def drawing(stages: Stages) -> SeamDrawing:
     return SeamDrawing(BodyPlaces.of(stages))
 
 
+def handles(made: SeamDrawing, block: Block, curve: str) -> dict[int, Points]:
+    return dict(handles_of(made, block, curve, made.curves(block)))
+
+
 def moved(
     stages: Stages, curve: str, handle: int, off: tuple[float, float, float]
 ) -> tuple[np.ndarray, np.ndarray]:
     """Where a handle was wished, and where it is then [mm]."""
     made = drawing(stages)
-    place = dict(handles_of(made, BLOCK, curve))[handle] + np.array(off)
-    after = dict(handles_of(made, moved_block(made, BLOCK, curve, handle, place), curve))[handle]
+    place = handles(made, BLOCK, curve)[handle] + np.array(off)
+    after = handles(made, moved_block(made, BLOCK, curve, handle, place), curve)[handle]
     return [place, after]
 
 
@@ -53,15 +59,15 @@ def test_a_handle_goes_where_it_is_dragged(
 
 def test_both_sides_are_moved_unless_each_has_its_own(built: Built) -> None:
     made = drawing(built("mannequin"))
-    place = dict(handles_of(made, BLOCK, "cup seam right"))[1] + [0.0, 0.0, -8.0]
+    place = handles(made, BLOCK, "cup seam right")[1] + [0.0, 0.0, -8.0]
     both = moved_block(made, BLOCK, "cup seam right", 1, place).seam("cup seam")
     assert both.right == ()
     assert both.places[1].startswith("root 1")
-    apart = with_own_sides(BLOCK, "cup seam", apart=True)
+    apart = BLOCK.with_own_sides("cup seam", apart=True)
     one = moved_block(made, apart, "cup seam right", 1, place).seam("cup seam")
     assert one.places == BLOCK.seam("cup seam").places, "the left side stays"
     assert one.right[1] == both.places[1]
-    assert with_own_sides(apart, "cup seam", apart=False) == BLOCK
+    assert apart.with_own_sides("cup seam", apart=False) == BLOCK
     curves = {
         each.name: each.points for each in made.curves(moved_block(made, apart, "cup seam right", 1, place))
     }

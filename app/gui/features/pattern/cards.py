@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import (
@@ -26,18 +26,20 @@ from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import number, tr
 from app.i18n.lengths import length, length_number
 from app.presenters.messages import own_title
-from app.presenters.model_options import Amount
+from app.presenters.model_options import Amount, length_amount
 from app.presenters.pattern import PieceRow, SeamRow
 from core.document.block import LARGEST_ALLOWANCE, WAY, Seam
 from core.document.cloth import Cloth
 from core.messages import ClothName
-from core.pattern.dart_chart import DartChart
+
+if TYPE_CHECKING:
+    from core.pattern.dart_chart import DartChart
 
 STEPS = 200
 """Places of the knob along a seam."""
 
 _RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
-_MOST_WAYS = 4  # ways out that are offered at once
+_MOST_FIXES = 4  # fixes that are suggested at once
 
 
 class _Card(QFrame):
@@ -66,20 +68,18 @@ class _Card(QFrame):
 
 
 class PieceCard(_Card):
-    """The selected piece: its strain, its cloth and grain line, and ways out where the cloth cannot take it.
+    """The selected piece: its strain, its cloth and grain line, and fixes where it exceeds the limit.
 
-    ``way_chosen`` carries the number of a way out; ``ways_requested`` asks for them, ``chart_requested`` for
-    the chart of darts.
-
-    ``dart_chosen`` and ``dart_requested`` carry a Dart of it: one to show, one to add.
+    ``fixes_requested`` and ``chart_requested`` start their computation; ``fix_chosen`` carries the number of
+    a fix, ``dart_chosen`` and ``dart_requested`` a Dart of the chart: one to show, one to add.
     """
 
     cloth_chosen = Signal(str)
     cloth_table_requested = Signal()
     stretch_test_requested = Signal()
     turn_changed = Signal(float)
-    ways_requested = Signal()
-    way_chosen = Signal(int)
+    fixes_requested = Signal()
+    fix_chosen = Signal(int)
     chart_requested = Signal()
     dart_chosen = Signal(object)
     dart_requested = Signal(object)
@@ -92,30 +92,30 @@ class PieceCard(_Card):
         self.cloth.setMinimumHeight(28)
         self._menu = Menu(self)
         self.cloth.clicked.connect(lambda: pull_down(self._menu, self.cloth))
-        turn = Amount("turn", tr("Grain line turned"), "", "°", 1.0, 0, (-90.0, 90.0))
+        turn = Amount("turn", tr("Grain line rotation"), "", "°", 1.0, 0, (-90.0, 90.0))
         self.turn = AmountEdit(turn)
         self.turn.entered.connect(self.turn_changed.emit)
         self.column.addWidget(self.facts)
-        self.add_field(tr("Cloth"), tr("What the piece is cut from; both sides have the same"), self.cloth)
-        tip = tr("0° is up on the body; the greatest stretch runs square to it")
+        self.add_field(tr("Cloth"), tr("Set the cloth of the piece on both sides"), self.cloth)
+        tip = tr("Rotate the grain line: 0° is up on the body")
         self.add_field(turn.title, tip, self.turn)
         self.column.addWidget(self.reason)
-        self._ways = QVBoxLayout()
-        self._ways.setSpacing(4)
-        self.column.addLayout(self._ways)
+        self._fixes = QVBoxLayout()
+        self._fixes.setSpacing(4)
+        self.column.addLayout(self._fixes)
         self.column.addWidget(self._make_chart())
         self.column.addLayout(self._make_buttons())
 
     def _make_buttons(self) -> QHBoxLayout:
         row = QHBoxLayout()
         row.setSpacing(6)
-        self.look_for = button(tr("Find ways out"))
-        set_tip(self.look_for, tr("Try a dart, another cloth, one more seam; measure what each leaves"))
-        self.look_for.clicked.connect(self.ways_requested)
-        self.chart = button(tr("Where a dart helps"))
-        set_tip(self.chart, tr("Try darts all round the piece and draw on the body what each leaves"))
+        self.suggest = button(tr("Suggest fixes"))
+        set_tip(self.suggest, tr("Compute the strain with a dart, another cloth or one more seam"))
+        self.suggest.clicked.connect(self.fixes_requested)
+        self.chart = button(tr("Dart chart"))
+        set_tip(self.chart, tr("Compute the remaining strain for darts all round the piece"))
         self.chart.clicked.connect(self.chart_requested)
-        row.addWidget(self.look_for)
+        row.addWidget(self.suggest)
         row.addWidget(self.chart)
         row.addStretch(1)
         return row
@@ -150,7 +150,7 @@ class PieceCard(_Card):
         if row is None:
             return
         self.heading.setText(row.title)
-        facts = tr("95 % of its area within {strain} %; the cloth takes up {limit} %. {area} cm².")
+        facts = tr("Strain {strain} % on 95 % of the area, limit {limit} %. {area} cm².")
         self.facts.setText(
             facts.format(
                 strain=number(row.strain_percent, 1),
@@ -160,7 +160,7 @@ class PieceCard(_Card):
         )
         self.reason.setText(row.reason)
         self.reason.setVisible(bool(row.reason))
-        self.look_for.setVisible(not row.fits)
+        self.suggest.setVisible(not row.fits)
         self.turn.show_value(turn)
         self._fill_menu(cloths, cloth)
 
@@ -180,22 +180,22 @@ class PieceCard(_Card):
             self.stretch_test_requested
         )
 
-    def show_ways(self, words: Sequence[str], note: str = "") -> None:
-        """Offer ways out by their sentences, the best first; ``note`` says that they are being looked for."""
-        while self._ways.count():
-            item = self._ways.takeAt(0)
+    def show_fixes(self, words: Sequence[str], note: str = "") -> None:
+        """Show fixes by their sentences, the best first, or a ``note``."""
+        while self._fixes.count():
+            item = self._fixes.takeAt(0)
             if item is not None and (old := item.widget()) is not None:
                 old.deleteLater()
         if note:
-            self._ways.addWidget(sentence(note, "caption"))
-        for place, text in enumerate(words[:_MOST_WAYS]):
-            press = _WayButton(text)
-            press.clicked.connect(_emitting(self.way_chosen.emit, place))
-            self._ways.addWidget(press)
+            self._fixes.addWidget(sentence(note, "caption"))
+        for place, text in enumerate(words[:_MOST_FIXES]):
+            press = _FixButton(text)
+            press.clicked.connect(_emitting(self.fix_chosen.emit, place))
+            self._fixes.addWidget(press)
 
 
-class _WayButton(QFrame):
-    """A way out: what it leaves, and a button that applies it."""
+class _FixButton(QFrame):
+    """A fix: its strain, and a button that applies it."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
@@ -227,22 +227,22 @@ class SeamCard(_Card):
         self.note = sentence("", "secondary")
         set_tag(self.note, "tone", "warn")
         self.hint = sentence(tr("Drag the points of the seam on the body to move it."), "caption")
-        amount = Amount("gain", tr("Seam allowance"), "", "mm", 1.0, 1, (0.0, LARGEST_ALLOWANCE))
-        self.allowance = AmountEdit(amount)  # left empty it is that of the pattern
+        amount = length_amount("allowance", tr("Seam allowance"), "", (0.0, LARGEST_ALLOWANCE), optional=True)
+        self.allowance = AmountEdit(amount)
         self.allowance.entered.connect(self.allowance_changed.emit)
         self.column.addLayout(self._grid)
         self.column.addWidget(self.note)
-        tip = tr("Left empty it is that of the whole pattern")
+        tip = tr("Leave empty to use the allowance of the pattern")
         self.add_field(amount.title, tip, self.allowance)
         self.column.addLayout(self._make_walk())
-        self.apart = QCheckBox(tr("Each side its own"))
+        self.apart = QCheckBox(tr("Edit sides separately"))
         self.apart.setFont(font("secondary"))
-        set_tip(self.apart, tr("Else a point that is moved on one side is moved on the other too"))
+        set_tip(self.apart, tr("Move points of the left and right seam separately"))
         self.apart.clicked.connect(self.apart_changed)
         self.column.addWidget(self.apart)
         self.column.addWidget(self.hint)
         self.reset = button(tr("Reset seam"))
-        set_tip(self.reset, tr("Move its points back to where the block has them"))
+        set_tip(self.reset, tr("Restore the points of the block"))
         self.reset.clicked.connect(self.reset_requested)
         self.column.addWidget(self.reset, alignment=Qt.AlignmentFlag.AlignLeft)
 
@@ -252,24 +252,33 @@ class SeamCard(_Card):
         self.knob.setRange(0, STEPS)
         self.knob.setAccessibleName(tr("Walk the seam"))
         self.so_far = label("", "caption", tabular=True)
-        set_tip(self.knob, tr("Walk the seam: the same place on the body and on both pieces"))
+        set_tip(self.knob, tr("Show the same position on the body and on both pieces"))
         self.knob.valueChanged.connect(lambda value: self.walked.emit(value / STEPS))
         row.addWidget(label(tr("Walk the seam"), "secondary"))
         row.addWidget(self.knob, 1)
         row.addWidget(self.so_far)
         return row
 
-    def show_seam(self, title: str, rows: Sequence[SeamRow], seam: Seam, *, can_reset: bool) -> None:
+    def show_seam(self, title: str, rows: Sequence[SeamRow] | None, seam: Seam, *, can_reset: bool) -> None:
         """Show a seam by all pairs of pieces that it joins; one without pairs is an edge.
 
-        It is reset where it ``can_reset``: it lies elsewhere than in the block that comes with Busk.
+        None in place of ``rows``: lengths are not computed yet, those of the same seam stay. The seam
+        ``can_reset`` where it differs from the built-in block.
         """
+        if rows is not None or title != self.heading.text():
+            self._show_rows(rows)
         self.show()
         self.heading.setText(title)
         self.allowance.show_value(seam.allowance)
         self.apart.setVisible(seam.each and seam.kind == WAY)
         self.apart.setChecked(bool(seam.right))
         self.reset.setVisible(can_reset)
+
+    def _show_rows(self, rows: Sequence[SeamRow] | None) -> None:
+        if rows is None:
+            self.note.hide()
+            self._show_lines([])
+            return
         self.note.setText(" ".join(row.note for row in rows if row.note))
         self.note.setVisible(bool(self.note.text()))
         lines: list[tuple[str, str]] = []
@@ -282,7 +291,7 @@ class SeamCard(_Card):
                 (tr("Each piece alone"), f"{length_number(one, 1)} / {length(other, 1)}"),
                 (tr("Matched"), f"{length_number(first, 1)} / {length(second, 1)}"),
             ]
-        self._show_lines(lines or [(tr("An edge: nothing is sewn to it."), "")])
+        self._show_lines(lines or [(tr("Edge, not sewn"), "")])
 
     def show_walked(self, words: str) -> None:
         """Show the lengths up to the knob."""

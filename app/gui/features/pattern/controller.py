@@ -11,17 +11,16 @@ from PySide6.QtCore import QObject, Signal
 from app.gui.features.pattern.exporting import PatternExport
 from app.gui.features.pattern.garment_layer import GarmentLayer, GarmentSeams, vertex_colours
 from app.gui.features.pattern.panel import PatternPanel
+from app.gui.features.pattern.piece_fixes import PieceFixes
 from app.gui.features.pattern.pieces_view import PiecesView, strain_ramp
 from app.gui.features.pattern.seam_editing import SeamEditing
-from app.gui.features.pattern.ways_out import WaysOut
 from app.gui.features.pattern.worker import PatternRequest, PatternResult, PatternWorker
 from app.gui.theme.stylesheet import tokens_of
 from app.i18n.catalog import number, tr
 from app.i18n.lengths import length
 from app.presenters.messages import render
-from app.presenters.pattern import block_about, block_title, piece_rows, seam_rows, seam_title
-from app.presenters.pattern_layout import piece_shapes
-from core.document.block import Block
+from app.presenters.pattern import block_about, block_title, seam_title
+from core.document.block import Block, without_side
 from core.document.design import Design
 from core.document.garment_pattern import GarmentPattern
 from core.document.lower_trunk import LowerTrunk
@@ -57,20 +56,21 @@ class PatternController(QObject):
         self.layer = GarmentLayer(context)
         self.worker = PatternWorker(context.jobs, self)
         self.result: PatternResult | None = None
-        self._refused = ""
+        self._failure = ""
         self.piece = self.seam = ""
         self.is_open = False
         self._framed = ""  # the block that the camera was moved to
         self.editing = SeamEditing(context, self)
-        self.files, self.ways = PatternExport(context, self), WaysOut(context, self)
+        self.files, self.fixes = PatternExport(context, self), PieceFixes(context, self)
         panel.set_blocks([(each.name, block_title(each), block_about(each)) for each in built_in_blocks()])
         self._connect()
         self._add_actions()
 
     def _connect(self) -> None:
         panel, view, layer, session = self.panel, self.view, self.layer, self._session
-        self.worker.made.connect(self._take)
-        self.worker.refused.connect(self._refuse)
+        self.worker.computed.connect(self._take)
+        self.worker.failed.connect(self._fail)
+        self.worker.stopped.connect(self._stop)
         session.design_changed.connect(self._follow_design)
         session.opened.connect(lambda _: self._forget())
         self._context.navigation.step_shown.connect(self._show_step)
@@ -151,12 +151,12 @@ class PatternController(QObject):
 
     def set_bridged(self, on: bool) -> None:
         """Let the cloth span hollows or lie in them."""
-        self.change(tr("Cloth bridges hollows") if on else tr("Cloth lies in hollows"), bridged=on)
+        self.change(tr("Bridge hollows") if on else tr("Do not bridge hollows"), bridged=on)
 
     # -- what is shown
 
     def follow(self, frame: Frame) -> None:
-        """Have the pieces of a frame made, if the step is open."""
+        """Compute the pieces of a frame, if the step is open."""
         plan = self.plan
         if not self.is_open or plan is None:
             return
@@ -167,7 +167,7 @@ class PatternController(QObject):
         if self.result is not None and final and self._is_of(frame, plan):
             self._show()
             return
-        self.worker.ask(PatternRequest(frame, plan, final))
+        self.worker.submit(PatternRequest(frame, plan, final))
         self._show_state()
 
     def is_current(self) -> bool:
@@ -199,9 +199,9 @@ class PatternController(QObject):
     def _follow_design(self, design: Design) -> None:
         plan = design.pattern
         self.panel.show_plan(plan, "" if plan is None else block_title(plan.block))
-        self._refused = ""
+        self._failure = ""
         if plan is None:
-            self.worker.stop()
+            self.worker.cancel()
             self.result = None
             self.select_piece("")
             self._show()
@@ -209,7 +209,7 @@ class PatternController(QObject):
             self.follow(self._session.frame)
 
     def _forget(self) -> None:
-        self.worker.stop()
+        self.worker.cancel()
         self.result, self.piece, self.seam = None, "", ""
         self._show()
 
@@ -217,45 +217,50 @@ class PatternController(QObject):
         """Show new pieces; those of a former shape are shown too while a newer one is being made."""
         if self.plan is None or not self.is_open:
             return
-        self.result, self._refused = result, ""
+        self.result, self._failure = result, ""
         self._show()
         self.changed.emit()
         frame = self._session.frame
         if frame is not None and not self.worker.at_work and not self.is_current():
-            self._ask_again(frame, result)
+            self._request_again(frame, result)
 
-    def _ask_again(self, frame: Frame, result: PatternResult) -> None:
+    def _request_again(self, frame: Frame, result: PatternResult) -> None:
         """Make the pieces that are to be cut, once nothing moves any more."""
         plan, final = self.plan, self._session.is_converged and self.editing.trial is None
         if plan is not None and (final or plan != result.request.plan):
-            self.worker.ask(PatternRequest(frame, plan, final))
+            self.worker.submit(PatternRequest(frame, plan, final))
 
-    def _refuse(self, request: PatternRequest, error: Exception) -> None:
+    def _fail(self, request: PatternRequest, error: Exception) -> None:
         if request.plan != self.plan:
             return
         if not isinstance(error, UserError):
             self._context.notifications.error(error)
-            self._refused = tr("The pieces could not be computed.")
+            self._failure = tr("The pieces could not be computed.")
         else:
-            self._refused = render(error.text)
+            self._failure = render(error.text)
         if not self.editing.carries:
             self.result = None
         self._show()
 
+    def _stop(self) -> None:
+        """Show that the user has cancelled the computation."""
+        self._failure = "" if self.result else tr("The computation of the pieces was cancelled.")
+        self._show_state()
+
     def _show(self) -> None:
-        """Show what is known of the pieces."""
+        """Show the present result."""
         result = self.result
         if result is None:
             self.view.show_pieces((), {}, {})
             self.panel.show_pieces((), faint=False, selected="")
             self.layer.clear()
         else:
-            rows = {row.name: row for row in piece_rows(result.pattern)}
+            rows = {row.name: row for row in result.pieces}
             if self.piece not in rows:
                 self.piece = ""
             titles = {name: row.title for name, row in rows.items()}
             values = {name: f"{number(row.strain_percent, 1)} %" for name, row in rows.items()}
-            self.view.show_pieces(piece_shapes(result.pattern), titles, values)
+            self.view.show_pieces(result.shapes, titles, values)
             self.panel.show_pieces(tuple(rows.values()), faint=not self.is_current(), selected=self.piece)
             self._draw_garment()
         self._show_state()
@@ -269,9 +274,9 @@ class PatternController(QObject):
         self.panel.export.setEnabled(current)
         if plan is None:
             self.view.show_words(tr("Choose a garment block to see its pieces here."))
-        elif self._refused:
-            self.view.show_words("" if result is not None else self._refused)
-            self.panel.show_verdict(self._refused, "warn")
+        elif self._failure:
+            self.view.show_words("" if result is not None else self._failure)
+            self.panel.show_verdict(self._failure, "warn")
         elif result is None:
             self.view.show_words(tr("Computing pattern pieces…"))
             self.panel.show_verdict("", "")
@@ -281,13 +286,11 @@ class PatternController(QObject):
 
     def _show_verdict(self, result: PatternResult, current: bool) -> None:
         if not current:
-            self.panel.show_verdict(tr("Pieces of a shape that is not settled"), "faint")
+            self.panel.show_verdict(tr("Solver not converged: pieces may change"), "faint")
             return
-        rows, pattern = piece_rows(result.pattern), result.pattern
-        tight = sum(not row.fits for row in rows)
-        off = max((fit.off for fit in pattern.matched.fits), default=0.0)
-        note = tr("{count} pieces. Seams agree within {length}.").format(
-            count=len(rows), length=length(max(off, 0.01), 2)
+        tight = sum(not row.fits for row in result.pieces)
+        note = tr("{count} pieces. Seam lengths match within {length}.").format(
+            count=len(result.pieces), length=length(max(result.pattern.matched.off, 0.01), 2)
         )
         if tight:
             words = (
@@ -346,8 +349,8 @@ class PatternController(QObject):
         self.layer.select(self.seam, self.editing.handles())
 
     def _show_piece(self, result: PatternResult, plan: GarmentPattern) -> None:
-        row = next((row for row in piece_rows(result.pattern) if row.name == self.piece), None)
-        panel = next((each for each in plan.block.panels if self.piece in _named(each.name, each.each)), None)
+        row = next((row for row in result.pieces if row.name == self.piece), None)
+        panel = next((each for each in plan.block.panels if each.name == without_side(self.piece)[0]), None)
         if row is None or panel is None:
             self.panel.piece_card.hide()
             return
@@ -361,7 +364,8 @@ class PatternController(QObject):
             self.view.walk(None)
             self.layer.walk(np.empty((0, 3)))
             return
-        rows = [row for row in seam_rows(result.pattern) if row.name == self.seam]
+        seams = result.seams
+        rows = None if seams is None else [row for row in seams if row.name == self.seam]
         self.panel.seam_card.show_seam(
             seam_title(self.seam), rows, seam, can_reset=self.editing.is_moved(plan.block, seam)
         )
@@ -383,8 +387,3 @@ class PatternController(QObject):
         """Return the name that files of the pieces begin with."""
         plan = self.plan
         return f"{self._session.name}-{plan.block.name}" if plan is not None else self._session.name
-
-
-def _named(name: str, each: bool) -> tuple[str, ...]:
-    """Return the names of the pieces of a panel."""
-    return (f"{name} left", f"{name} right") if each else (name,)

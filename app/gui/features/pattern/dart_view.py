@@ -3,6 +3,8 @@
 # ruff: noqa: D102, N802 - Qt names its events and says what they are
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPen, QPolygonF
@@ -12,7 +14,9 @@ from app.gui.theme.stylesheet import font, tokens_of
 from app.gui.widgets.basic import announce
 from app.i18n.catalog import number, tr
 from core.geometry.mesh import Floats
-from core.pattern.dart_chart import Dart, DartChart
+
+if TYPE_CHECKING:
+    from core.pattern.dart_chart import Dart, DartChart
 
 _ROOM = 26.0  # for the words round it [px]
 _LEAST = 0.25  # of the radius, of the smallest strain [1]
@@ -35,7 +39,7 @@ class DartChartView(QWidget):
         self.setFixedHeight(190)
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.setAccessibleName(tr("Strain that darts leave"))
+        self.setAccessibleName(tr("Remaining strain by dart position"))
 
     def sizeHint(self) -> QSize:
         return QSize(280, 190)
@@ -87,11 +91,11 @@ class DartChartView(QWidget):
     def words(self) -> str:
         """Return what the chosen dart leaves."""
         if self.dart is None:
-            return tr("No dart lies flat here.")
+            return tr("No dart can be flattened here.")
         strain = number(100.0 * self.dart.within, 1)
         if self.dart.clock is None:
-            return tr("A dart from here leaves {strain} %.").format(strain=strain)
-        text = tr("A dart from {clock}° leaves {strain} %.")
+            return tr("Dart from here: strain {strain} %").format(strain=strain)
+        text = tr("Dart from {clock}°: strain {strain} %")
         return text.format(clock=number(self.dart.clock, 0), strain=strain)
 
     def mousePressEvent(self, event: QMouseEvent) -> None:

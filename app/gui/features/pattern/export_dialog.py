@@ -24,7 +24,7 @@ _GAP = 10.0  # round a page [px]
 
 
 class PatternExportDialog(Dialog):
-    """Offers kinds of files and paper with a preview; ``changed`` when a choice is another."""
+    """Offers kinds of files and paper with a preview; ``changed`` when the pages are others."""
 
     changed = Signal()
     save_requested = Signal()
@@ -62,9 +62,9 @@ class PatternExportDialog(Dialog):
         self.papers = Segment(tuple(paper_titles().items()), small=True)
         self.papers.set_choice(self.paper)
         self.papers.chosen.connect(self._choose_paper)
-        self.strips = QCheckBox(tr("Straps and bands too"))
+        self.strips = QCheckBox(tr("Include straps and bands"))
         self.strips.setFont(font("body"))
-        set_tip(self.strips, tr("Strips of the lines that are worn, apart from elastics of edges"))
+        set_tip(self.strips, tr("Add strips of the active lines, except elastics of edges"))
         self.strips.clicked.connect(self.changed)
         for each in (self.paper_label, self.papers):
             column.addWidget(each)
@@ -96,8 +96,11 @@ class PatternExportDialog(Dialog):
         """Show the pages that would be printed, or ``words`` why there are none."""
         self.preview.show_pages(pages, words)
         self._show_page()
-        for each in (self.save, self.print):
-            each.setEnabled(pages is not None)
+        self._enable_buttons()
+
+    def _enable_buttons(self) -> None:
+        self.save.setEnabled(self.preview.count > 0)
+        self.print.setEnabled(self.kind == "pdf" and self.preview.count > 0)
 
     def show_doubt(self, words: str) -> None:
         """Say what to mind before cutting."""
@@ -108,8 +111,7 @@ class PatternExportDialog(Dialog):
         self.kind = kind
         for part in (self.paper_label, self.papers):
             part.setEnabled(kind == "pdf")
-        self.print.setEnabled(kind == "pdf" and self.preview.count > 0)
-        self.changed.emit()
+        self._enable_buttons()
 
     def _choose_paper(self, paper: str) -> None:
         self.paper = paper

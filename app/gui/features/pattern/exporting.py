@@ -1,47 +1,44 @@
-"""Pieces leave the window: previewed, printed, and written as files of every kind; blocks and cloths too."""
+"""Export of pieces: previewed, printed and written as files; blocks and cloths are opened and saved."""
 
 from __future__ import annotations
 
 import datetime
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from PySide6.QtCore import QObject
 
-from app.gui.features.pattern.export_dialog import PatternExportDialog
 from app.gui.file_export import print_pages, write_file
+from app.gui.session.jobs import Job
 from app.gui.widgets.file_dialogs import ask_file, ask_save
 from app.i18n.catalog import language, tr
 from app.presenters.messages import render
-from app.presenters.pattern_files import (
-    ENDINGS,
-    CutPattern,
-    cut_pattern,
-    kind_titles,
-    tiling_of,
-    write_pattern,
-)
-from app.report.pattern_sheets import PatternSheets, pattern_sheets
 from app.report.pdf_file import write_pdf
 from core.errors import UserError
 from core.export.report_data import Heading
 from core.pattern.block_library import read_block, write_block
 from core.pattern.cloth_csv import read_cloth, write_template
+from core.progress import Progress
 
 if TYPE_CHECKING:
     from app.gui.context import AppContext
     from app.gui.features.pattern.controller import PatternController
+    from app.gui.features.pattern.export_dialog import PatternExportDialog
+    from app.presenters.pattern_files import CutPattern
+    from app.report.pattern_sheets import PatternSheets
+    from core.pattern.layout import Tiling
 
 _ABOUT = "pattern"  # what notices of files are about
 
 
 class PatternExport(QObject):
-    """Opens the dialog of exports, and reads and writes blocks and tables of cloths."""
+    """Opens the export dialog, and reads and writes blocks and tables of cloths."""
 
     def __init__(self, context: AppContext, controller: PatternController) -> None:
         super().__init__(controller)
         self._context, self._controller = context, controller
         self.dialog: PatternExportDialog | None = None
+        self._job: Job | None = None
         self._cut: CutPattern | None = None
         self._pages: PatternSheets | None = None
         panel = controller.panel
@@ -55,7 +52,9 @@ class PatternExport(QObject):
     # -- pieces
 
     def show(self) -> None:
-        """Show what can be written of the pieces."""
+        """Show the export dialog."""
+        from app.gui.features.pattern.export_dialog import PatternExportDialog  # noqa: PLC0415 (brings shapely)
+
         dialog = self.dialog = PatternExportDialog(self._context.window)
         dialog.changed.connect(self._refresh)
         dialog.save_requested.connect(self._save)
@@ -65,29 +64,50 @@ class PatternExport(QObject):
         dialog.open()
 
     def _forget(self) -> None:
-        self.dialog = self._cut = self._pages = None
+        self._context.jobs.cancel(self._job)
+        self.dialog = self._job = self._cut = self._pages = None
 
     def _refresh(self) -> None:
-        """Lay the present pieces out on the chosen paper."""
+        """Lay the present pieces out on the chosen paper, in the background."""
         dialog, result, plan = self.dialog, self._controller.result, self._controller.plan
         if dialog is None:
             return
-        self._cut = self._pages = None
+        self._context.jobs.cancel(self._job)
+        self._job = self._cut = self._pages = None
         if result is None or plan is None or not self._controller.is_current():
-            dialog.show_pages(None, tr("The pieces follow when the solver has converged."))
+            dialog.show_pages(None, tr("The preview is created when the solver has converged."))
             return
-        try:
-            strips = dialog.strips.isChecked()
-            frame = result.request.frame
-            self._cut = cut_pattern(result.pattern, plan, frame, frame.vertices, strips=strips)
-            tiling = tiling_of(self._cut, dialog.paper)
-        except UserError as error:
-            dialog.show_pages(None, render(error.text))
-            return
-        self._pages = pattern_sheets(tiling, self._heading(), language())
-        dialog.show_pages(self._pages)
+        strips, paper = dialog.strips.isChecked(), dialog.paper
+        dialog.show_pages(None, tr("Preparing preview…"))
         fits = result.pattern.fits_cloths
-        dialog.show_doubt("" if fits else tr("Pieces that do not fit their cloths are written all the same."))
+        dialog.show_doubt("" if fits else tr("Some pieces exceed the limit of their cloth. Do not cut them."))
+
+        def work(progress: Progress) -> object:
+            from app.presenters.pattern_files import cut_pattern, tiling_of  # noqa: PLC0415 (brings shapely)
+
+            frame = result.request.frame
+            cut = cut_pattern(result.pattern, plan, frame, frame.vertices, strips=strips)
+            return cut, tiling_of(cut, paper)
+
+        words = tr("Preparing preview…")
+        self._job = self._context.jobs.run(words, work, self._show_pages, self._fail)
+
+    def _show_pages(self, laid_out: object) -> None:
+        from app.report.pattern_sheets import pattern_sheets  # noqa: PLC0415 (brings shapely)
+
+        self._cut, tiling = cast("tuple[CutPattern, Tiling]", laid_out)
+        self._pages = pattern_sheets(tiling, self._heading(), language())
+        if self.dialog is not None:
+            self.dialog.show_pages(self._pages)
+
+    def _fail(self, error: Exception) -> None:
+        if isinstance(error, UserError):
+            words = render(error.text)
+        else:
+            words = tr("The preview could not be created.")
+            self._context.notifications.error(error)
+        if self.dialog is not None:
+            self.dialog.show_pages(None, words)
 
     def _heading(self) -> Heading:
         document = self._context.session.document
@@ -100,6 +120,8 @@ class PatternExport(QObject):
         dialog, cut, pages = self.dialog, self._cut, self._pages
         if dialog is None or cut is None or pages is None:
             return
+        from app.presenters.pattern_files import ENDINGS, kind_titles, write_pattern  # noqa: PLC0415
+
         kind, ending = dialog.kind, ENDINGS[dialog.kind]
         title = kind_titles()[kind][0]
         name = f"{self._controller.stem()}-{tr('pieces')}{ending}"

@@ -12,11 +12,11 @@ from PySide6.QtCore import QObject, QPointF, Qt, Signal
 from app.gui.viewport.drawing_tool import DrawingTool
 from app.rendering.vertex_colors import Colours
 from core.geometry.mesh import Faces, Floats, Indices, Points
-from core.pattern.garment import Pattern
 
 if TYPE_CHECKING:
     from app.gui.context import AppContext
     from app.rendering.garment_actor import GarmentActor
+    from core.pattern.garment import Pattern
 
 _NEAR, _GRIP = 8.0, 13.0  # how near to a seam and to one of its points the pointer means it [px]
 
@@ -75,7 +75,7 @@ class GarmentLayer(QObject):
         assert canvas is not None
         self._canvas = canvas
         self.hand = DrawingTool(self._viewport, canvas)
-        self.hand.grabs = self._grabs
+        self.hand.grabs, self.hand.takes = self._grabs, self._takes
         self.hand.clicked.connect(self._click)
         self.hand.hovered.connect(self._hover)
         self.hand.dragged.connect(self._drag)
@@ -231,9 +231,10 @@ class GarmentLayer(QObject):
             self._held = None
             self.dropped.emit()
 
-    def _press(self, what: str) -> None:
-        if what != "leave":
-            return
+    def _takes(self, request: str) -> bool:
+        return request == "leave" and bool(self.seam or self._held is not None)
+
+    def _press(self, _: str) -> None:
         if self._held is not None:
             self._held = None
             self.cancelled.emit()

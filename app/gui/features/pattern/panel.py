@@ -16,7 +16,7 @@ from app.gui.widgets.navigation_row import NavigationRow
 from app.gui.widgets.option_field import AmountEdit, OptionCombo
 from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
-from app.presenters.model_options import Amount
+from app.presenters.model_options import length_amount
 from app.presenters.pattern import PieceRow
 from core.document.block import LARGEST_ALLOWANCE
 from core.document.garment_pattern import GarmentPattern
@@ -56,15 +56,14 @@ class PatternPanel(QStackedWidget):
         head.setSpacing(6)
         head.addWidget(label(tr("Pattern pieces"), "heading"))
         words = tr(
-            "Choose a garment block. Its seams are drawn on the body by landmarks, and its pieces are laid "
-            "flat beside it."
+            "Choose a garment block. Busk places its seams on the body by landmarks and flattens its pieces."
         )
         head.addWidget(sentence(words))
         page.column.addLayout(head)
         self._doors = QVBoxLayout()
         self._doors.setSpacing(0)
         page.column.addLayout(self._doors)
-        self.open_block = NavigationRow(tr("Open block…"), tr("A block that was saved as a file"))
+        self.open_block = NavigationRow(tr("Open block…"), tr("Open a block file"))
         self.open_block.clicked.connect(self.block_file_requested)
         page.column.addWidget(self.open_block)
         page.column.addStretch(1)
@@ -126,8 +125,8 @@ class PatternPanel(QStackedWidget):
         column, row = QVBoxLayout(), QHBoxLayout()
         column.setContentsMargins(6, 0, 6, 0)
         column.setSpacing(6)
-        tip = tr("Of all seams and edges that do not have their own")
-        amount = Amount("allowance", tr("Seam allowance"), tip, "mm", 1.0, 1, (0.0, LARGEST_ALLOWANCE))
+        tip = tr("Set the allowance of all seams and edges without their own")
+        amount = length_amount("allowance", tr("Seam allowance"), tip, (0.0, LARGEST_ALLOWANCE))
         self.allowance = AmountEdit(amount)
         self.allowance.setAccessibleName(amount.title)
         self.allowance.entered.connect(self.allowance_changed.emit)
@@ -138,11 +137,11 @@ class PatternPanel(QStackedWidget):
         row.addStretch(1)
         row.addWidget(self.allowance)
         column.addLayout(row)
-        self.bridged = QCheckBox(tr("Cloth bridges hollows"))
+        self.bridged = QCheckBox(tr("Bridge hollows"))
         self.bridged.setFont(font("secondary"))
         set_tip(
             self.bridged,
-            tr("Between the breasts, below an overhang and in the cleft, cloth leaves the skin"),
+            tr("Span cleavage, overhang and cleft instead of following the skin"),
         )
         self.bridged.clicked.connect(self.bridged_changed)
         column.addWidget(self.bridged)
@@ -153,7 +152,7 @@ class PatternPanel(QStackedWidget):
         column = QVBoxLayout(foot)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
-        self.lines_door = NavigationRow(tr("Line lengths"), tr("Set line lengths; the pieces follow"))
+        self.lines_door = NavigationRow(tr("Line lengths"), tr("Set line lengths and update the pieces"))
         self.lines_door.clicked.connect(self.lines_requested)
         column.addWidget(self.lines_door)
         column.addWidget(hairline())

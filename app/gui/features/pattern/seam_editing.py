@@ -12,7 +12,7 @@ from app.i18n.catalog import number, tr
 from app.i18n.lengths import length, length_number, length_unit
 from app.presenters.messages import own_title
 from app.presenters.pattern import piece_title, seam_title
-from core.document.block import Block, Seam
+from core.document.block import Block, Seam, without_side
 from core.document.cloth import Cloth
 from core.document.garment_pattern import GarmentPattern
 from core.errors import UserError
@@ -21,12 +21,11 @@ from core.geometry.plane_sections import arc_length, interpolate
 from core.messages import ClothName
 from core.pattern.block_library import built_in_blocks
 from core.pattern.cloth_library import find_cloth, with_cloth
-from core.pattern.garment import Pattern
-from core.pattern.seam_moves import handles_of, moved_block, with_own_sides, with_seam
 
 if TYPE_CHECKING:
     from app.gui.context import AppContext
     from app.gui.features.pattern.controller import PatternController
+    from core.pattern.garment import Pattern
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,8 +72,11 @@ class SeamEditing(QObject):
         result, plan, name = self._controller.result, self._controller.plan, self._controller.seam
         if result is None or plan is None or self.seam(plan.block, name) is None:
             return np.empty((0, 3))
+        from core.pattern.seam_moves import handles_of  # noqa: PLC0415 (takes 0.1 s to load)
+
         try:
-            found = handles_of(result.drawing, result.pattern.garment.block, name)
+            garment = result.pattern.garment
+            found = handles_of(result.drawing, garment.block, name, garment.curves)
         except (UserError, KeyError):  # of a seam that the shown pieces do not have yet
             return np.empty((0, 3))
         return np.array([place for _, place in found]).reshape(-1, 3)
@@ -84,6 +86,8 @@ class SeamEditing(QObject):
         controller, plan = self._controller, self._controller.plan
         if controller.result is None or plan is None:
             return
+        from core.pattern.seam_moves import moved_block  # noqa: PLC0415 (takes 0.1 s to load)
+
         if self.trial is None:
             controller.carrying_changed.emit()
         try:
@@ -134,8 +138,8 @@ class SeamEditing(QObject):
         plan, name = self._controller.plan, self._controller.seam
         if plan is None or self.seam(plan.block, name) is None:
             return
-        text = tr("{seam}: each side its own") if apart else tr("{seam}: both sides alike")
-        block = with_own_sides(plan.block, name, apart)
+        text = tr("{seam}: sides separate") if apart else tr("{seam}: sides symmetric")
+        block = plan.block.with_own_sides(name, apart)
         self._controller.change(text.format(seam=seam_title(plan.block.seam(name).name)), block=block)
 
     def set_allowance(self, mm: float | None) -> None:
@@ -143,14 +147,14 @@ class SeamEditing(QObject):
         plan, name = self._controller.plan, self._controller.seam
         seam = None if plan is None else self.seam(plan.block, name)
         if seam is not None:
-            amount = tr("as the pattern") if mm is None else length(mm, 1)
+            amount = tr("default") if mm is None else length(mm, 1)
             text = tr("Allowance of {seam}: {amount}").format(seam=seam_title(name), amount=amount)
             self._edit_seam(replace(seam, allowance=mm), text)
 
     def _edit_seam(self, seam: Seam, text: str) -> None:
         plan = self._controller.plan
         assert plan is not None
-        self._controller.change(text, block=with_seam(plan.block, seam))
+        self._controller.change(text, block=plan.block.with_seam(seam))
 
     # -- the selected piece
 
@@ -166,7 +170,7 @@ class SeamEditing(QObject):
         if plan is not None and piece:
             title = own_title(ClothName(cloth.title))
             text = tr("Cloth of {piece}: {cloth}").format(piece=_both(piece), cloth=title)
-            self._controller.set_plan(with_cloth(plan, _base(piece), cloth), text)
+            self._controller.set_plan(with_cloth(plan, without_side(piece)[0], cloth), text)
 
     def turn(self, degrees: float) -> None:
         """Turn the grain line of the selected piece [degrees]."""
@@ -179,7 +183,7 @@ class SeamEditing(QObject):
         plan, piece = self._controller.plan, self._controller.piece
         if plan is None:
             return
-        base = _base(piece)
+        base = without_side(piece)[0]
         panels = tuple(
             replace(each, **changes) if each.name in (piece, base) else each  # type: ignore[arg-type]
             for each in plan.block.panels
@@ -191,13 +195,14 @@ class SeamEditing(QObject):
     def walked(self, pattern: Pattern, name: str, share: float) -> Walked:
         """Return the place at a share of the length of a seam, on the body and on its pieces."""
         places, lengths = [], []
-        fits = [fit for fit in pattern.matched.fits if fit.seam.name == name]
-        for fit in fits:
-            panel, points = fit.seam.panels[0], fit.seam.points[0]
-            curve = pattern.places[panel][points]
+        for seam in pattern.matched.seams:
+            if seam.name != name:
+                continue
+            curve = pattern.places[seam.panels[0]][seam.points[0]]
             along = arc_length(curve)
             places.append(interpolate(np.array([share * along[-1]]), along, curve)[0])
-            lengths.append(tuple(share * each for each in fit.together))
+            sides = zip(seam.panels, seam.sides, strict=True)
+            lengths.append([share * pattern.flats[panel].side_length(side) for panel, side in sides])
         words = " / ".join(f"{length_number(one, 1)} | {length_number(two, 1)}" for one, two in lengths)
         return Walked(np.array(places).reshape(-1, 3), f"{words} {length_unit()}" if words else "")
 
@@ -206,10 +211,5 @@ def _original(block: Block) -> Block | None:
     return next((each for each in built_in_blocks() if each.name == block.name), None)
 
 
-def _base(piece: str) -> str:
-    """Return the name of a piece without its side."""
-    return piece.removesuffix(" left").removesuffix(" right")
-
-
 def _both(piece: str) -> str:
-    return piece_title(_base(piece))
+    return piece_title(without_side(piece)[0])

@@ -1,30 +1,31 @@
-"""Pieces of the shown body, made beside the window: the newest shape counts, what has not changed stays."""
+"""Computes the pattern pieces of the shown body in the background; only the newest request counts."""
 
 from __future__ import annotations
 
-import operator
 import threading
 from dataclasses import dataclass
 from functools import partial
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 
 from app.gui.session.jobs import Job, Jobs
 from app.i18n.catalog import tr
 from core.document.garment_pattern import GarmentPattern
-from core.pattern.cloth_library import cloths_of
-from core.pattern.garment import CutGarment, Pattern, cut_garment, worn_skin
-from core.pattern.places import BodyPlaces
-from core.pattern.recut import recut
-from core.pattern.seam_curves import SeamDrawing
-from core.pattern.seam_matching import Matched
 from core.pipeline.frame import Frame
 from core.progress import Progress
+
+if TYPE_CHECKING:
+    from app.presenters.pattern import PieceRow, SeamRow
+    from app.presenters.pattern_layout import PieceShape
+    from core.pattern.garment import Pattern
+    from core.pattern.live_pattern import LivePattern
+    from core.pattern.seam_curves import SeamDrawing
 
 
 @dataclass(frozen=True, eq=False)
 class PatternRequest:
-    """Pieces wanted of a ``frame`` by a ``plan``; those that are not ``final`` start near the last ones."""
+    """A pattern of a ``frame`` by a ``plan``; one that is not ``final`` is for the screen only."""
 
     frame: Frame
     plan: GarmentPattern
@@ -33,101 +34,89 @@ class PatternRequest:
 
 @dataclass(frozen=True, eq=False)
 class PatternResult:
-    """The ``pattern`` of a request, and the ``drawing`` that its seams were drawn with."""
+    """The ``pattern`` of a request, and the ``drawing`` of its seams on the original body.
+
+    ``pieces`` and ``shapes`` are what is shown of its pieces, ``seams`` what is shown of its seams: None for
+    a pattern that is not final.
+    """
 
     request: PatternRequest
     pattern: Pattern
     drawing: SeamDrawing
+    pieces: tuple[PieceRow, ...]
+    shapes: tuple[PieceShape, ...]
+    seams: tuple[SeamRow, ...] | None
 
 
 class PatternWorker(QObject):
-    """Makes one pattern at a time. ``made`` carries a PatternResult, ``refused`` a request and why not."""
+    """Computes one pattern at a time.
 
-    made = Signal(object)
-    refused = Signal(object, object)
+    ``computed`` carries a PatternResult, ``failed`` a request and its exception, ``stopped`` is emitted when
+    the user cancels the job.
+    """
+
+    computed = Signal(object)
+    failed = Signal(object, object)
+    stopped = Signal()
 
     def __init__(self, jobs: Jobs, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._jobs = jobs
         self._job: Job | None = None
-        self._at: PatternRequest | None = None
-        self._wanted: PatternRequest | None = None
-        self._drawing: SeamDrawing | None = None
-        self._parts: tuple[object, ...] = ()  # that it draws by
-        self._garment: CutGarment | None = None
-        self._matched: Matched | None = None
-        self._is_recut = False  # of a garment of which only some panels were cut again
-        self._turn = threading.Lock()  # a job that was cancelled ends only when its pattern is made
+        self._running: PatternRequest | None = None
+        self._newest: PatternRequest | None = None
+        self._live: LivePattern | None = None
+        self._lock = threading.Lock()  # a cancelled job ends only when its pattern is computed
 
     @property
     def at_work(self) -> bool:
-        """Return whether the newest pattern is not made yet."""
-        return self._wanted is not None
+        """Return whether the newest request is still being computed."""
+        return self._newest is not None
 
-    def ask(self, request: PatternRequest) -> None:
-        """Make this pattern next."""
-        self._wanted = request
-        if self._at is None:
+    def submit(self, request: PatternRequest) -> None:
+        """Compute this request next, in place of any other that has not begun."""
+        self._newest = request
+        if self._running is None:
             self._begin()
 
-    def stop(self) -> None:
-        """Drop what is wanted, and what was kept for the next pattern."""
+    def cancel(self) -> None:
+        """Drop all requests."""
         self._jobs.cancel(self._job)
-        self._job = self._at = self._wanted = None
-        self._drawing = self._garment = self._matched = None
+        self._job = self._running = self._newest = None
 
     def _begin(self) -> None:
-        self._at = request = self._wanted
+        self._running = request = self._newest
         if request is not None:
-            end = partial(self._end, request)
-            self._job = self._jobs.run(
-                tr("Computing pattern pieces…"), partial(self._make, request), end, end
-            )
+            end, work = partial(self._end, request), partial(self._compute, request)
+            self._job = self._jobs.run(tr("Computing pattern pieces…"), work, end, end, left=self._stop)
+
+    def _stop(self) -> None:
+        self._job = self._running = self._newest = None
+        self.stopped.emit()
 
     def _end(self, request: PatternRequest, outcome: object) -> None:
-        self._at = None
-        if request is self._wanted:
-            self._wanted = None
+        self._running = None
+        if request is self._newest:
+            self._newest = None
         if isinstance(outcome, Exception):
-            self.refused.emit(request, outcome)
+            self.failed.emit(request, outcome)
         else:
-            self.made.emit(outcome)
-        if self._wanted is not None and self._at is None:
+            self.computed.emit(outcome)
+        if self._newest is not None and self._running is None:
             self._begin()
 
-    def _make(self, request: PatternRequest, progress: Progress) -> PatternResult:
-        """Make a pattern, in a thread of its own."""
-        with self._turn:
-            drawing = self._drawing_of(request.frame)
-            garment = self._garment_of(drawing, request)
-            cloths = cloths_of(request.plan)
-            former = None if request.final else self._matched
-            pattern = garment.flat(worn_skin(request.frame.stages, request.frame.vertices), cloths, former)
-            self._matched = pattern.matched
-            return PatternResult(request, pattern, drawing)
+    def _compute(self, request: PatternRequest, progress: Progress) -> PatternResult:
+        """Compute a pattern and the values that the window shows of it, in a thread of its own."""
+        from app.presenters.pattern import piece_rows, seam_rows  # noqa: PLC0415 (brings shapely along)
+        from app.presenters.pattern_layout import piece_shapes  # noqa: PLC0415
+        from core.pattern.live_pattern import LivePattern  # noqa: PLC0415
 
-    def _drawing_of(self, frame: Frame) -> SeamDrawing:
-        """Return what draws on the body at rest of a frame; it is kept while body and marks are the same."""
-        stages = frame.stages
-        lower = () if stages.lower is None else (stages.lower.landmarks,)
-        parts = (stages.body, stages.landmarks, *(each.fitted for each in stages.regions), *lower)
-        same = len(parts) == len(self._parts) and all(map(operator.is_, parts, self._parts))
-        if self._drawing is None or not same:
-            self._drawing, self._parts = SeamDrawing(BodyPlaces.of(stages)), parts
-            self._garment = self._matched = None
-        return self._drawing
-
-    def _garment_of(self, drawing: SeamDrawing, request: PatternRequest) -> CutGarment:
-        """Return the cut garment; one that is not final may be cut again only where its block has changed."""
-        plan, known = request.plan, self._garment
-        if known is None or known.is_bridged != plan.bridged:
-            made = cut_garment(drawing, plan.block, plan.bridged)
-        elif known.block == plan.block and not (request.final and self._is_recut):
-            return known
-        elif request.final:
-            made = cut_garment(drawing, plan.block, plan.bridged)
-        else:
-            made = recut(known, drawing, plan.block)
-        self._is_recut = not request.final and known is not None
-        self._garment, self._matched = made, None
-        return made
+        with self._lock:
+            live = self._live = self._live or LivePattern()
+            stages, vertices = request.frame.stages, request.frame.vertices
+            pattern = live.pattern(stages, vertices, request.plan, final=request.final)
+            assert live.drawing is not None
+            seams = seam_rows(pattern) if request.final else None
+            return PatternResult(
+                request, pattern, live.drawing, piece_rows(pattern), piece_shapes(pattern), seams
+            )

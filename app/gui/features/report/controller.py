@@ -21,7 +21,6 @@ from app.gui.widgets.file_dialogs import ask_save
 from app.i18n.catalog import language, tr
 from app.presenters.lines import line_colours
 from app.presenters.messages import render
-from app.presenters.pattern_files import pattern_or_reason
 from app.rendering.ambient_occlusion import bake_occlusion
 from app.report.document import ReportDocument
 from app.report.pages import Pages, pages_of
@@ -33,13 +32,15 @@ from core.export.report_data_file import report_csv, report_json
 from core.files.atomic_write import write_text
 from core.geometry.mesh import Floats
 from core.messages import Message
-from core.pattern.garment import Pattern
 from core.pipeline.converged import converged_frame
 from core.pipeline.live_solver import Frame
 from core.progress import Progress
 
 if TYPE_CHECKING:
     from app.gui.context import AppContext
+    from core.pattern.garment import Pattern
+
+    _Computed = tuple[Report, Frame, Pattern | Message | None, Floats]
 
 WithUncertainties = Callable[[Report, Frame | None, Frame | None], Report]
 """Returns a sheet of a frame, with its uncertainties by the whole run of that."""
@@ -168,13 +169,17 @@ class ReportController(QObject):
             whole = converged_frame(design, frame.stages, lambda what, share: progress(what, 0.1 * share))
             sheet = make_report(whole, whole.tracks.get(design.volume, ()), heading, progress)
             baked = known[1] if known is not None and known[0] is body else bake_occlusion(body.mesh)
+            from app.presenters.pattern_files import pattern_or_reason  # noqa: PLC0415 (brings shapely along)
+
             pattern = pattern_or_reason(whole.stages, whole.vertices)
             return sheet, whole, pattern, baked
 
         def draw(found: object) -> None:
             from app.report.images import render_images  # noqa: PLC0415 (brings VTK along)
 
-            sheet, whole, pattern, baked = cast(tuple[Report, Frame, Pattern | Message | None, Floats], found)
+            sheet, whole, pattern, baked = cast(
+                "tuple[Report, Frame, Pattern | Message | None, Floats]", found
+            )
             self._occlusion, self._whole = (body, baked), whole
             document = ReportDocument(sheet, {}, self._colours(frame), pattern)
             finish, left = partial(done, document), self._leave_off

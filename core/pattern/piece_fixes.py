@@ -1,6 +1,6 @@
-"""Ways out for a piece that is more than its cloth takes up: a dart, another cloth, one more seam.
+"""Fixes for a piece whose strain exceeds the limit of its cloth: a dart, another cloth, one more seam.
 
-Each is tried: the block is changed, cut again on the body, and all its pieces are matched.
+Each is verified: the changed block is cut again on the body, and all its pieces are matched.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from functools import partial
 
 import numpy as np
 
-from core.document.block import WAY, Block, PanelPlan, Seam
+from core.document.block import WAY, Block, PanelPlan, Seam, without_side
 from core.errors import PatternError, UserError
 from core.geometry.mesh import Flags, Points
 from core.landmarks.types import SIDES
@@ -26,14 +26,14 @@ from core.progress import Progress, quiet
 DART, CLOTH, SEAM = "dart", "cloth", "seam"
 
 MOST_CLOTHS, MOST_DARTS = 2, 2
-"""Cloths and darts that are offered for a piece."""
+"""Cloths and darts that are suggested for a piece."""
 
 _APART = 40.0  # darts start at least so far from each other [degrees]
-_ORDER = (DART, CLOTH, SEAM)  # what is offered first where both fit
+_ORDER = (DART, CLOTH, SEAM)  # of suggestions where both fit
 
 
 @dataclass(frozen=True)
-class Remedy:
+class PieceFix:
     """A changed ``block`` in which a piece has less strain: ``left`` on 95 % of its area [1], measured.
 
     ``kind`` is DART, CLOTH or SEAM. ``limit`` [1] is that of its cloth, ``fits`` whether all that the piece
@@ -57,37 +57,37 @@ class _Change:
     plans: tuple[str, ...]
 
 
-def remedies(
+def piece_fixes(
     pattern: Pattern, piece: str, drawing: SeamDrawing, vertices: Points, progress: Progress = quiet
-) -> tuple[Remedy, ...]:
-    """Return ways out for the piece of this name, with its side, best first: those that fit, least change.
+) -> tuple[PieceFix, ...]:
+    """Return fixes for the piece of this name, with its side: those that fit first, then the least change.
 
     ``drawing`` is of the body on which the pattern was cut, ``vertices`` (n, 3) [mm] where it is laid flat.
-    A dart or seam is offered near a breast alone. None that leaves more strain is returned. Raises Cancelled.
+    A dart or seam is suggested near a breast alone, and none that leaves more strain. Raises Cancelled.
     """
     panel = next(each for each in pattern.garment.panels if each.name == piece)
     before = pattern.strains[piece].within
     changes = [*_cloths(pattern, panel), *_cuts(pattern, panel, drawing, progress)]
     found = []
     for number, change in enumerate(changes):
-        progress("remedies", 0.3 + 0.7 * number / len(changes))
-        remedy = _tried(change, pattern, drawing, vertices)
-        if remedy is not None and (remedy.fits or remedy.left < before):
-            found.append(remedy)
-    progress("remedies", 1.0)
+        progress("fixes", 0.3 + 0.7 * number / len(changes))
+        fix = _tried(change, pattern, drawing, vertices)
+        if fix is not None and (fix.fits or fix.left < before):
+            found.append(fix)
+    progress("fixes", 1.0)
     found.sort(key=_rank)
     cloths = [each for each in found if each.kind == CLOTH][:MOST_CLOTHS]
     return tuple(each for each in found if each.kind != CLOTH or each in cloths)
 
 
-def _rank(remedy: Remedy) -> tuple[bool, int, int, float]:
+def _rank(fix: PieceFix) -> tuple[bool, int, int, float]:
     """Order what fits before what does not, and cloths by how little they stretch further."""
-    last = remedy.limit if remedy.kind == CLOTH else remedy.left
-    return not remedy.fits, remedy.others, _ORDER.index(remedy.kind), last
+    last = fix.limit if fix.kind == CLOTH else fix.left
+    return not fix.fits, fix.others, _ORDER.index(fix.kind), last
 
 
-def _tried(change: _Change, pattern: Pattern, drawing: SeamDrawing, vertices: Points) -> Remedy | None:
-    """Return what a change is measured to leave; None where it cannot be cut."""
+def _tried(change: _Change, pattern: Pattern, drawing: SeamDrawing, vertices: Points) -> PieceFix | None:
+    """Return a change with its measured strain; None where it cannot be cut."""
     try:
         if change.kind == CLOTH:
             garment = _with_cloths(pattern.garment, change.block)
@@ -96,28 +96,24 @@ def _tried(change: _Change, pattern: Pattern, drawing: SeamDrawing, vertices: Po
         tried = garment.flat(vertices, pattern.cloths)
     except UserError:
         return None
-    own = [flat for flat in tried.flats if _plan_name(flat.panel.name) in change.plans]
+    own = [flat for flat in tried.flats if without_side(flat.panel.name)[0] in change.plans]
     left = max(tried.strains[flat.panel.name].within for flat in own)
     limit = min(tried.cloths[flat.panel.cloth].limit for flat in own)
     others = sum(not tried.fits(flat) for flat in tried.flats if flat not in own)
     message = change.message(f"{100.0 * left:.1f}", f"{100.0 * limit:g}")
-    return Remedy(change.kind, message, change.block, left, limit, all(map(tried.fits, own)), others)
+    return PieceFix(change.kind, message, change.block, left, limit, all(map(tried.fits, own)), others)
 
 
 def _with_cloths(garment: CutGarment, block: Block) -> CutGarment:
     """Return the same panels of the cloths of a block."""
     cloths = {plan.name: plan.cloth for plan in block.panels}
-    panels = tuple(replace(each, cloth=cloths[_plan_name(each.name)]) for each in garment.panels)
+    panels = tuple(replace(each, cloth=cloths[without_side(each.name)[0]]) for each in garment.panels)
     return replace(garment, block=block, panels=panels)
-
-
-def _plan_name(panel: str) -> str:
-    return panel.removesuffix(" left").removesuffix(" right")
 
 
 def _cloths(pattern: Pattern, panel: Panel) -> Iterator[_Change]:
     """Yield the cloths that take up more than that of a panel, and could take up its strain."""
-    block, name = pattern.garment.block, _plan_name(panel.name)
+    block, name = pattern.garment.block, without_side(panel.name)[0]
     own, needed = pattern.cloths[panel.cloth].limit, pattern.strains[panel.name].within
     for cloth in sorted(pattern.cloths.values(), key=lambda each: each.limit):
         if cloth.limit > max(own, 0.8 * needed):
@@ -140,7 +136,7 @@ def _cuts(pattern: Pattern, panel: Panel, drawing: SeamDrawing, progress: Progre
     for dart in sorted(chart.darts, key=lambda each: each.within):
         if all(abs((_clock(dart) - _clock(other) + 180.0) % 360.0 - 180.0) >= _APART for other in chosen):
             chosen.append(dart)
-    plan = next(p for p in pattern.garment.block.panels if p.name == _plan_name(panel.name))
+    plan = next(p for p in pattern.garment.block.panels if p.name == without_side(panel.name)[0])
     changes = [_with_dart(pattern.garment.block, plan, dart, breast) for dart in chosen[:MOST_DARTS]]
     if chosen:
         changes += _with_seam(pattern, plan, panel, chosen[0], chart, breast)
@@ -163,7 +159,7 @@ def _breast_of(panel: Panel, places: Points, drawing: SeamDrawing) -> BreastMap 
 
 
 def _start_word(dart: Dart) -> str:
-    return f"root {_clock(dart):.0f} > {_plan_name(dart.seam)}"
+    return f"root {_clock(dart):.0f} > {without_side(dart.seam)[0]}"
 
 
 def _with_dart(block: Block, plan: PanelPlan, dart: Dart, breast: BreastMap) -> _Change:
@@ -185,7 +181,7 @@ def _with_seam(
     away = {side.name: _distance(places[side.points], breast.apex) for side in panel.sides}
     nearest = min(away, key=lambda name: away[name])
     if away[nearest] < CLEAR:
-        stops = [_start_word(dart), f"apex > {_plan_name(nearest)}"]
+        stops = [_start_word(dart), f"apex > {without_side(nearest)[0]}"]
     else:
         other = min(chart.darts, key=lambda each: abs((_clock(each) - _clock(dart)) % 360.0 - 180.0))
         stops = [_start_word(dart), "apex", _start_word(other)]
@@ -213,7 +209,7 @@ def _cloth_message(cloth: str, left: str, limit: str) -> Message:
 def _dart_message(dart: Dart, left: str, limit: str) -> Message:
     return Message(
         "A dart from the {seam} at {clock}\N{DEGREE SIGN}: {left} % of {limit} %.",
-        seam=SeamName(_plan_name(dart.seam)),
+        seam=SeamName(without_side(dart.seam)[0]),
         clock=f"{_clock(dart):.0f}",
         left=left,
         limit=limit,
@@ -224,7 +220,7 @@ def _seam_message(piece: str, dart: Dart, left: str, limit: str) -> Message:
     return Message(
         "A seam through the {piece} from the {seam} at {clock}\N{DEGREE SIGN}: {left} % of {limit} %.",
         piece=PieceName(piece),
-        seam=SeamName(_plan_name(dart.seam)),
+        seam=SeamName(without_side(dart.seam)[0]),
         clock=f"{_clock(dart):.0f}",
         left=left,
         limit=limit,
@@ -259,7 +255,7 @@ def with_dart(pattern: Pattern, piece: str, dart: Dart, drawing: SeamDrawing) ->
         raise PatternError(
             Message("A dart can be added near a breast only."), Message("Draw it into the block instead.")
         )
-    plan = next(each for each in block.panels if each.name == _plan_name(piece))
+    plan = next(each for each in block.panels if each.name == without_side(piece)[0])
     return _with_dart(block, plan, dart, breast).block
 
 

@@ -1,4 +1,4 @@
-"""Ways out for a piece that its cloth cannot take, and the chart of darts: worked out beside the window."""
+"""Fixes for a piece that exceeds the limit of its cloth, and its dart chart: computed in the background."""
 
 from __future__ import annotations
 
@@ -14,104 +14,110 @@ from app.presenters.messages import render
 from app.presenters.pattern import piece_title
 from core.document.block import Block
 from core.errors import UserError
-from core.pattern.dart_chart import Dart, DartChart
-from core.pattern.garment import worn_skin
-from core.pattern.remedies import Remedy, chart_of, remedies, with_dart
 from core.progress import Progress
 
 if TYPE_CHECKING:
     from app.gui.context import AppContext
     from app.gui.features.pattern.controller import PatternController
+    from core.pattern.dart_chart import Dart, DartChart
+    from core.pattern.piece_fixes import PieceFix
 
 
-class WaysOut(QObject):
-    """Works out ways out of the selected piece when they are asked for, and applies one of them."""
+class PieceFixes(QObject):
+    """Computes fixes and the dart chart of the selected piece on request, and applies a fix."""
 
     def __init__(self, context: AppContext, controller: PatternController) -> None:
         super().__init__(controller)
         self._context, self._controller = context, controller
         self._job: Job | None = None
         self._piece = ""
-        self._found: tuple[Remedy, ...] = ()
+        self._found: tuple[PieceFix, ...] = ()
         card = controller.panel.piece_card
         self._card = card
-        card.ways_requested.connect(self.look_for)
-        card.way_chosen.connect(self._apply)
+        card.fixes_requested.connect(self.suggest)
+        card.fix_chosen.connect(self._apply)
         card.chart_requested.connect(self.draw_chart)
         card.dart_chosen.connect(self._show_dart)
         card.dart_requested.connect(self._add_dart)
         controller.selected.connect(self._follow)
 
-    def look_for(self) -> None:
-        """Try darts, cloths and one more seam for the selected piece."""
+    def suggest(self) -> None:
+        """Compute fixes for the selected piece."""
         result, piece = self._controller.result, self._controller.piece
         if result is None or not piece:
             return
-        skin = worn_skin(result.request.frame.stages, result.request.frame.vertices)
-        pattern, drawing = result.pattern, result.drawing
+        frame, pattern, drawing = result.request.frame, result.pattern, result.drawing
 
         def work(progress: Progress) -> object:
-            return remedies(pattern, piece, drawing, skin, progress)
+            from core.pattern.garment import worn_skin  # noqa: PLC0415 (takes 0.1 s to load)
+            from core.pattern.piece_fixes import piece_fixes  # noqa: PLC0415
 
-        self._begin(tr("Trying ways out…"), work, self._show)
+            skin = worn_skin(frame.stages, frame.vertices)
+            return piece_fixes(pattern, piece, drawing, skin, progress)
+
+        self._begin(tr("Computing fixes…"), work, self._show)
 
     def draw_chart(self) -> None:
-        """Try darts all round the selected piece, and draw what each leaves."""
+        """Compute the dart chart of the selected piece."""
         result, piece = self._controller.result, self._controller.piece
         if result is None or not piece:
             return
         pattern, drawing = result.pattern, result.drawing
 
         def work(progress: Progress) -> object:
+            from core.pattern.piece_fixes import chart_of  # noqa: PLC0415 (takes 0.1 s to load)
+
             return chart_of(pattern, piece, drawing, progress)
 
-        self._begin(tr("Trying darts…"), work, self._show_chart)
+        self._begin(tr("Computing dart chart…"), work, self._show_chart)
 
     def _begin(self, words: str, work: Callable[[Progress], object], done: Callable[[object], None]) -> None:
         self._context.jobs.cancel(self._job)
         self._piece = self._controller.piece
-        self._card.show_ways((), words)
+        self._card.show_fixes((), words)
         self._job = self._context.jobs.run(words, work, done, self._fail, waited=True)
 
     def _fail(self, error: Exception) -> None:
         if isinstance(error, UserError):
-            self._card.show_ways((), render(error.text))
+            self._card.show_fixes((), render(error.text))
         else:
-            self._card.show_ways((), tr("Nothing was found."))
+            self._card.show_fixes((), tr("The computation failed."))
             self._context.notifications.error(error)
 
     def _show(self, found: object) -> None:
-        self._found = cast(tuple[Remedy, ...], found)
+        self._found = cast("tuple[PieceFix, ...]", found)
         words = [render(each.message) for each in self._found]
-        self._card.show_ways(words, "" if words else tr("No dart, cloth or seam leaves less strain."))
+        self._card.show_fixes(words, "" if words else tr("No dart, cloth or seam reduces the strain."))
 
     def _apply(self, place: int) -> None:
         if place < len(self._found):
-            remedy = self._found[place]
-            self._take(remedy.block, render(remedy.message))
+            fix = self._found[place]
+            self._take(fix.block, render(fix.message))
 
     # -- the chart
 
     def _show_chart(self, found: object) -> None:
-        chart, result = cast(DartChart, found), self._controller.result
+        chart, result = cast("DartChart", found), self._controller.result
         if result is None:
             return
         cloth = next(p.cloth for p in result.pattern.garment.panels if p.name == chart.panel)
-        self._card.show_ways(())
+        self._card.show_fixes(())
         self._card.show_chart(chart, result.pattern.cloths[cloth].limit)
         if chart.best is not None:
             self._show_dart(chart.best)
 
     def _show_dart(self, dart: object) -> None:
-        shown = cast(Dart, dart)
+        shown = cast("Dart", dart)
         self._controller.layer.mark([np.stack([shown.start, shown.end])])
 
     def _add_dart(self, dart: object) -> None:
         result = self._controller.result
         if result is None:
             return
+        from core.pattern.piece_fixes import with_dart  # noqa: PLC0415 (takes 0.1 s to load)
+
         try:
-            block = with_dart(result.pattern, self._piece, cast(Dart, dart), result.drawing)
+            block = with_dart(result.pattern, self._piece, cast("Dart", dart), result.drawing)
         except UserError as error:
             self._context.notifications.error(error, "pattern")
             return
@@ -122,13 +128,13 @@ class WaysOut(QObject):
         self._clear()
 
     def _follow(self) -> None:
-        """Forget what was found for another piece or another shape."""
+        """Clear the fixes of another piece."""
         if self._controller.piece != self._piece:
             self._clear()
 
     def _clear(self) -> None:
         self._context.jobs.cancel(self._job)
         self._piece, self._found = "", ()
-        self._card.show_ways(())
+        self._card.show_fixes(())
         self._card.show_chart(None, 0.0)
         self._controller.layer.mark(())

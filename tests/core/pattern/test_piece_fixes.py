@@ -9,8 +9,8 @@ import pytest
 from core.pattern.block_library import block_of, block_text, find_block
 from core.pattern.cloth_library import built_in
 from core.pattern.garment import Pattern, cut_garment
+from core.pattern.piece_fixes import CLOTH, DART, SEAM, PieceFix, piece_fixes
 from core.pattern.places import BodyPlaces
-from core.pattern.remedies import CLOTH, DART, SEAM, Remedy, remedies
 from core.pattern.seam_curves import SeamDrawing
 from core.pipeline.build import Stages
 
@@ -19,12 +19,12 @@ PIECE = "cup left"
 
 
 @pytest.fixture(scope="module")
-def tried(coarsely_built: Callable[[str], Stages]) -> tuple[Stages, Pattern, tuple[Remedy, ...]]:
+def tried(coarsely_built: Callable[[str], Stages]) -> tuple[Stages, Pattern, tuple[PieceFix, ...]]:
     stages = coarsely_built("mannequin")
     drawing = SeamDrawing(BodyPlaces.of(stages))
     vertices = stages.body.smoothed.vertices
     found = cut_garment(drawing, find_block("one-part-cup")).flat(vertices, CLOTHS)
-    return stages, found, remedies(found, PIECE, drawing, vertices)
+    return stages, found, piece_fixes(found, PIECE, drawing, vertices)
 
 
 def test_a_dart_another_cloth_and_a_seam_are_offered(tried: tuple) -> None:
