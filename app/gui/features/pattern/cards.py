@@ -140,6 +140,7 @@ class PieceCard(_Card):
     def show_chart(self, chart: DartChart | None, limit: float) -> None:
         """Show what darts leave, beside the limit of the cloth [1]; None hides the chart."""
         self._charted.setVisible(chart is not None)
+        self.reason.setVisible(chart is None and bool(self.reason.text()))  # the chart has the limit too
         if chart is not None:
             self.darts.show_chart(chart, limit)
             self.dart_words.setText(self.darts.words())
@@ -259,17 +260,21 @@ class SeamCard(_Card):
         row.addWidget(self.so_far)
         return row
 
-    def show_seam(self, title: str, rows: Sequence[SeamRow] | None, seam: Seam, *, can_reset: bool) -> None:
+    def show_seam(
+        self, title: str, rows: Sequence[SeamRow] | None, seam: Seam, usual: float, *, can_reset: bool
+    ) -> None:
         """Show a seam by all pairs of pieces that it joins; one without pairs is an edge.
 
-        None in place of ``rows``: lengths are not computed yet, those of the same seam stay. The seam
-        ``can_reset`` where it differs from the built-in block.
+        None in place of ``rows``: lengths are not computed yet, those of the same seam stay. Without an
+        allowance of its own it has the ``usual`` one [mm]. It ``can_reset`` where it differs from the
+        built-in block.
         """
         if rows is not None or title != self.heading.text():
             self._show_rows(rows)
         self.show()
         self.heading.setText(title)
         self.allowance.show_value(seam.allowance)
+        self.allowance.setPlaceholderText(length_number(usual, 1))
         self.apart.setVisible(seam.each and seam.kind == WAY)
         self.apart.setChecked(bool(seam.right))
         self.reset.setVisible(can_reset)

@@ -366,9 +366,9 @@ class PatternController(QObject):
             return
         seams = result.seams
         rows = None if seams is None else [row for row in seams if row.name == self.seam]
-        self.panel.seam_card.show_seam(
-            seam_title(self.seam), rows, seam, can_reset=self.editing.is_moved(plan.block, seam)
-        )
+        moved = self.editing.is_moved(plan.block, seam)
+        title = seam_title(self.seam)
+        self.panel.seam_card.show_seam(title, rows, seam, plan.allowance, can_reset=moved)
         self._walk(self.panel.seam_card.knob.value() / max(self.panel.seam_card.knob.maximum(), 1))
 
     def _walk(self, share: float) -> None:

@@ -7,7 +7,7 @@ from PySide6.QtCore import QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QRadioButton, QVBoxLayout, QWidget
 
-from app.gui.theme.stylesheet import font, label, tokens_of
+from app.gui.theme.stylesheet import font, label, set_tag, tokens_of
 from app.gui.widgets.basic import Segment, ToolButton, sentence
 from app.gui.widgets.dialog import Dialog
 from app.gui.widgets.tooltip import set_tip
@@ -36,6 +36,7 @@ class PatternExportDialog(Dialog):
         self.preview = PagePreview()
         self.facts = label("", "secondary")
         self.doubt = sentence("", "secondary")
+        set_tag(self.doubt, "tone", "warn")
         row = QHBoxLayout()
         row.setSpacing(20)
         row.addLayout(self._make_choices())

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtCore import QObject, QPointF, Qt, Signal
+from PySide6.QtCore import QObject, QPointF, Qt, QTimer, Signal
 
 from app.gui.viewport.drawing_tool import DrawingTool
 from app.rendering.vertex_colors import Colours
@@ -89,6 +89,8 @@ class GarmentLayer(QObject):
         self._knob: Points = np.empty((0, 3))
         self._marks: tuple[Points, ...] = ()
         self._held: int | None = None
+        self._redraw = QTimer(self, interval=0, singleShot=True)  # what changes together is drawn once
+        self._redraw.timeout.connect(self._draw)
 
     @property
     def carries(self) -> bool:
@@ -110,6 +112,7 @@ class GarmentLayer(QObject):
     def clear(self) -> None:
         """Draw nothing."""
         self.seams = None
+        self._redraw.stop()
         if self._actor is not None and self._actor.is_shown:
             self._actor.clear()
             self._viewport.request_draw()
@@ -117,34 +120,34 @@ class GarmentLayer(QObject):
     def show(self, seams: GarmentSeams, colours: Colours) -> None:
         """Draw a garment in these colours of its points, (n, 3)."""
         self.seams, self._colours = seams, colours
-        self._draw()
+        self._redraw.start()
 
     def select(self, seam: str, handles: Points) -> None:
         """Mark a seam, with its points on the body at rest that can be dragged, (h, 3) [mm]."""
         self.seam, self._handles = seam, handles
-        self._draw()
+        self._redraw.start()
 
     def hover(self, seam: str) -> None:
         """Mark the seam under the pointer, here or among the pieces."""
         if seam != self._hovered:
             self._hovered = seam
-            self._draw()
+            self._redraw.start()
 
     def mark(self, curves: Sequence[Points]) -> None:
         """Draw curves on the cloth beside the seams, each (k, 3) [mm]: a dart that is tried."""
         self._marks = tuple(curves)
-        self._draw()
+        self._redraw.start()
 
     def walk(self, knob: Points) -> None:
         """Show where a seam is walked, (0 or more, 3) [mm]."""
         self._knob = knob
-        self._draw()
+        self._redraw.start()
 
     def set_dark(self, dark: bool) -> None:
         """Repaint for one theme."""
         if self._actor is not None:
             self._actor.set_dark(dark)
-            self._draw()
+            self._redraw.start()
 
     def _draw(self) -> None:
         if self.seams is None or not self._viewport.shows_body:
