@@ -113,11 +113,8 @@ class SkinRegion:
         return replace(self, area=_area(vertices[self.source], self.faces))
 
 
-def skin_regions(net: SeamNet, names: tuple[str, ...], seeds: Points) -> tuple[SkinRegion, ...]:
-    """Return the skin round each of ``seeds`` (s, 3) [mm] as far as curves, those that are no slits.
-
-    Raises PatternError where it is no disc, or the same for two.
-    """
+def face_regions(net: SeamNet) -> Indices:
+    """Return the number of the region of each triangle, (m,): all curves but slits divide them."""
     cut = net.cut
     sides = half_edges(cut.faces)
     curve_edge = net.find(sides)
@@ -127,8 +124,16 @@ def skin_regions(net: SeamNet, names: tuple[str, ...], seeds: Points) -> tuple[S
     open_side = np.flatnonzero(~barrier & (beyond >= 0))
     pairs = open_side % len(cut.faces), beyond[open_side]
     graph = sparse.coo_array((np.ones(len(open_side), dtype=np.int8), pairs), (len(cut.faces),) * 2)
-    label = sparse.csgraph.connected_components(graph, directed=False)[1]
-    at = label[_faces_at(cut, seeds)].tolist()
+    return np.asarray(sparse.csgraph.connected_components(graph, directed=False)[1], dtype=np.int64)
+
+
+def skin_regions(net: SeamNet, names: tuple[str, ...], seeds: Points) -> tuple[SkinRegion, ...]:
+    """Return the skin round each of ``seeds`` (s, 3) [mm] as far as curves, those that are no slits.
+
+    Raises PatternError where it is no disc, or the same for two.
+    """
+    label = face_regions(net)
+    at = label[_faces_at(net.cut, seeds)].tolist()
     for number, region in enumerate(at):
         if region in at[:number]:
             raise PatternError(

@@ -5,7 +5,7 @@ Each is verified: the changed block is cut again on the body, and all its pieces
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -13,7 +13,7 @@ import numpy as np
 
 from core.document.block import WAY, Block, PanelPlan, Seam, without_side
 from core.errors import PatternError, UserError
-from core.geometry.mesh import Flags, Points
+from core.geometry.mesh import Points
 from core.landmarks.types import SIDES
 from core.messages import ClothName, Message, PieceName, SeamName
 from core.pattern.breast_map import BreastMap
@@ -21,6 +21,7 @@ from core.pattern.dart_chart import CLEAR, Dart, DartChart, dart_chart
 from core.pattern.garment import CutGarment, Pattern, cut_garment
 from core.pattern.panel import Panel
 from core.pattern.seam_curves import SeamDrawing
+from core.pattern.seam_edits import new_name, with_dividing_seam
 from core.progress import Progress, quiet
 
 DART, CLOTH, SEAM = "dart", "cloth", "seam"
@@ -139,7 +140,7 @@ def _cuts(pattern: Pattern, panel: Panel, drawing: SeamDrawing, progress: Progre
     plan = next(p for p in pattern.garment.block.panels if p.name == without_side(panel.name)[0])
     changes = [_with_dart(pattern.garment.block, plan, dart, breast) for dart in chosen[:MOST_DARTS]]
     if chosen:
-        changes += _with_seam(pattern, plan, panel, chosen[0], chart, breast)
+        changes += _with_seam(pattern, plan, panel, chart, chosen[0], drawing)
     return changes
 
 
@@ -164,7 +165,7 @@ def _start_word(dart: Dart) -> str:
 
 def _with_dart(block: Block, plan: PanelPlan, dart: Dart, breast: BreastMap) -> _Change:
     """Return a block with one more slit on each side."""
-    name = _new_name(f"{plan.name} dart", [seam.name for seam in block.seams])
+    name = new_name(f"{plan.name} dart", [seam.name for seam in block.seams])
     end = breast.word(dart.end)
     seam = Seam(name, WAY, each=True, places=(_start_word(dart), end), slit=True)
     message = partial(_dart_message, dart)
@@ -172,34 +173,28 @@ def _with_dart(block: Block, plan: PanelPlan, dart: Dart, breast: BreastMap) -> 
 
 
 def _with_seam(
-    pattern: Pattern, plan: PanelPlan, panel: Panel, dart: Dart, chart: DartChart, breast: BreastMap
+    pattern: Pattern, plan: PanelPlan, panel: Panel, chart: DartChart, dart: Dart, drawing: SeamDrawing
 ) -> Iterator[_Change]:
     """Yield the block in which the place of a dart is a seam right through a panel, over the bust point."""
-    block, places = pattern.garment.block, pattern.places[pattern.garment.panels.index(panel)]
+    garment, places = pattern.garment, pattern.places[pattern.garment.panels.index(panel)]
+    side = without_side(panel.name)[1]
     if not plan.each:
         return
-    away = {side.name: _distance(places[side.points], breast.apex) for side in panel.sides}
+    apex = drawing.places.breasts[side].apex
+    away = {each.name: _distance(places[each.points], apex) for each in panel.sides}
     nearest = min(away, key=lambda name: away[name])
     if away[nearest] < CLEAR:
         stops = [_start_word(dart), f"apex > {without_side(nearest)[0]}"]
     else:
         other = min(chart.darts, key=lambda each: abs((_clock(each) - _clock(dart)) % 360.0 - 180.0))
         stops = [_start_word(dart), "apex", _start_word(other)]
-    turn = (breast.clock(places) - _clock(dart)) % 360.0
-    parts = [_middle(places, turn < 180.0), _middle(places, turn > 180.0)]
-    across = min(abs(_clock(dart) - at) for at in (90.0, 270.0)) < 45.0
-    parts.sort(key=lambda at: -at[2] if across else abs(at[0]))
-    words = ("upper", "lower") if across else ("inner", "outer")
-    names = tuple(_new_name(f"{word} {plan.name}", [p.name for p in block.panels]) for word in words)
-    plans = [
-        replace(plan, name=name, seed=breast.word(part)) for name, part in zip(names, parts, strict=True)
-    ]
-    at = block.panels.index(plan)
-    name = _new_name(f"{plan.name} seam", [seam.name for seam in block.seams])
-    seams = (*block.seams, Seam(name, WAY, each=True, places=tuple(stops)))
-    changed = replace(block, seams=seams, panels=(*block.panels[:at], *plans, *block.panels[at + 1 :]))
-    message = partial(_seam_message, plan.name, dart)
-    yield _Change(SEAM, message, changed, names)
+    name = new_name(f"{plan.name} seam", [seam.name for seam in garment.block.seams])
+    try:
+        block = with_dividing_seam(drawing, garment, Seam(name, WAY, each=True, places=tuple(stops)), side)
+    except UserError:
+        return
+    names = {each.name for each in block.panels} - {each.name for each in garment.block.panels}
+    yield _Change(SEAM, partial(_seam_message, plan.name, dart), block, tuple(names))
 
 
 def _cloth_message(cloth: str, left: str, limit: str) -> Message:
@@ -229,18 +224,6 @@ def _seam_message(piece: str, dart: Dart, left: str, limit: str) -> Message:
 
 def _distance(curve: Points, place: Points) -> float:
     return float(np.linalg.norm(curve - place, axis=1).min())
-
-
-def _middle(places: Points, chosen: Flags) -> Points:
-    """Return the place nearest to the mean of those that are ``chosen`` (p,), (3,) [mm]."""
-    own = places[chosen]
-    return np.asarray(own[int(np.linalg.norm(own - own.mean(axis=0), axis=1).argmin())])
-
-
-def _new_name(name: str, known: Sequence[str]) -> str:
-    """Return the name, with a number where there is one like it."""
-    numbered = [name, *(f"{name} {number}" for number in range(2, len(known) + 3))]
-    return next(each for each in numbered if each not in known)
 
 
 def with_dart(pattern: Pattern, piece: str, dart: Dart, drawing: SeamDrawing) -> Block:

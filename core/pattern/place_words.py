@@ -25,6 +25,8 @@ SAME = 0.5
 SHARE = 0.005
 """Shares of a half round are told in steps of this [1]; those of a root in hundredths, cells in tenths."""
 
+_BREAST = 1.2  # up to this share of the way to the root a new place is on the breast [1]
+
 _TURNS = 5  # of finding the place of a control mesh whose nearest place on the skin is the one that is meant
 
 
@@ -107,6 +109,24 @@ def _cell(places: BodyPlaces, region: str, side: str, target: Points) -> str:
     row = np.clip(row, 0.0, grid.top)
     column = np.clip(sign * column, 0.0, grid.half)
     return f"{'below ' if region == LOWER else ''}r{round(float(row), 1):g}c{round(float(column), 1):g}"
+
+
+def word_at(places: BodyPlaces, side: str, target: Points) -> str:
+    """Return a word for a new place of a seam on a side at ``target`` (3,) [mm] of the skin.
+
+    On a breast it is told by the root, elsewhere by a control mesh; for a seam over the middle, side "", it
+    has a side of its own. Raises PatternError for a body without breasts where there is no control mesh.
+    """
+    own = side or ("left" if target[0] > places.middle else "right")
+    words = [_cell(places, region, own, target) for region in places.meshes]
+    if f"bust_point_{own}" in places.landmarks.points:
+        breast = places.breasts[own]
+        clock, far = breast.locate(target)
+        if far < _BREAST * float(breast.root_distance(clock)):
+            words.append(_on_root(places, own, target, share=True, off=None))
+    away = [float(np.linalg.norm(places.place(word, own, {}, {}) - target)) for word in words]
+    word = words[-1] if away[-1] < OFF else words[int(np.argmin(away))]
+    return word if side else f"{word} {own}"
 
 
 def moved_span(
