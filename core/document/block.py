@@ -47,7 +47,8 @@ class Seam:
     another [degrees], ``below`` the bust point or above it. A ``slit`` is cut into a panel and divides none:
     a dart. Panels beside an ``edge`` are not sewn together, as where a band is hooked. ``allowance`` is that
     of both sides [mm], None for that of the pattern. An edge carries the elastic of ``line``, the name of a
-    line of the design without its side.
+    line of the design without its side. ``notches`` are shares of the length of each stretch that is sewn
+    [1], None for the usual ones; see ``core.pattern.notches``.
     """
 
     name: str
@@ -62,6 +63,7 @@ class Seam:
     edge: bool = False
     allowance: float | None = None
     line: str = ""
+    notches: tuple[float, ...] | None = None
 
     def named(self) -> tuple[tuple[str, str], ...]:
         """Return name and side of each curve that it is: "" for one over the middle."""
@@ -110,6 +112,10 @@ class Block:
                     (len(seam.places) + len(seam.right), MOST_PLACES, Message("places of a seam"))
                     for seam in self.seams
                 ),
+                *(
+                    (len(seam.notches or ()), MOST_PLACES, Message("notches of a seam"))
+                    for seam in self.seams
+                ),
             )
         )
         for names in (
@@ -144,6 +150,8 @@ class Block:
             raise self._refusal(f"the seam {seam.name} has fewer than two places on the right")
         if seam.allowance is not None and not 0.0 <= seam.allowance <= LARGEST_ALLOWANCE:
             raise self._refusal(f"the allowance of the seam {seam.name} is {seam.allowance:g} mm")
+        if not all(0.0 < each < 1.0 for each in seam.notches or ()):
+            raise self._refusal(f"a notch of the seam {seam.name} is not between its ends")
         if not all(math.isfinite(each) for each in seam.span):
             raise self._refusal(f"the span of the seam {seam.name} is not a number")
 

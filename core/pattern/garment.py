@@ -17,7 +17,7 @@ from core.messages import ClothName, Length, Message, PieceName, SeamName
 from core.pattern.bridging import bridged_cut
 from core.pattern.cloth_library import cloths_of
 from core.pattern.flattening import FlatPanel, StrainSummary, strain_summary
-from core.pattern.notches import notched
+from core.pattern.notches import notched, seam_share
 from core.pattern.panel import Bridge, Panel, PanelSeed, cut_panels
 from core.pattern.piece import NO_ELASTICS, EdgeElastic, Piece, Side, SideKey, merge_mirrored
 from core.pattern.places import BodyPlaces
@@ -236,7 +236,24 @@ class Pattern:
         Seams that have an allowance of their own keep it. ``elastics`` are those of edges, see
         ``core.pattern.edge_elastics``.
         """
-        return merge_mirrored(notched([self._piece(flat, allowance, elastics) for flat in self.flats]))
+        sewn = [self._piece(flat, allowance, elastics) for flat in self.flats]
+        return merge_mirrored(notched(sewn, self._own_notches))
+
+    @cached_property
+    def _own_notches(self) -> Mapping[str, tuple[float, ...]]:
+        seams = self.garment.block.seams
+        return {seam.name: seam.notches for seam in seams if seam.notches is not None}
+
+    @cached_property
+    def notches(self) -> Mapping[SideKey, tuple[float, ...]]:
+        """Return the notches of sides that are sewn, as shares of their lengths, by panel and number."""
+        pieces = notched([self._piece(flat, 0.0, NO_ELASTICS) for flat in self.flats], self._own_notches)
+        return {(piece.key, at): side.notches for piece in pieces for at, side in enumerate(piece.sides)}
+
+    def notch_share(self, seam: SewnSeam, share: float) -> float:
+        """Return what a block keeps of a notch of a seam at a share of its first side [1]."""
+        key = self.flats[seam.panels[0]].panel.name, seam.sides[0]
+        return seam_share([self._piece(flat, 0.0, NO_ELASTICS) for flat in self.flats], key, share)
 
     def _piece(self, flat: FlatPanel, allowance: float, elastics: Mapping[SideKey, EdgeElastic]) -> Piece:
         panel = flat.panel

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 
 from core.pattern.piece import Piece, Side, SideKey
 
@@ -20,17 +21,21 @@ DOUBLE = 6.0
 """How far the two marks of a double notch are apart, which is the last one of a seam at the back [mm]."""
 
 
+NO_NOTCHES: Mapping[str, tuple[float, ...]] = MappingProxyType({})
+
+
 def is_back(side: Side) -> bool:
     """Return whether a seam is named as one at the back."""
     return "back" in side.name.split()
 
 
-def notched(pieces: Sequence[Piece], back: Callable[[Side], bool] = is_back) -> tuple[Piece, ...]:
+def notched(pieces: Sequence[Piece], own: Mapping[str, tuple[float, ...]] = NO_NOTCHES) -> tuple[Piece, ...]:
     """Return pieces with notches on all sides that are sewn; edges keep those that they have.
 
     One side of each seam has them at ``SHARES`` of its length, its partner at the same shares from its other
     end: at equal lengths where the sides are equally long, in proportion where one is eased in. The last one
-    is double where ``back`` holds. Right sides are mirrored, so call this before ``merge_mirrored``.
+    is double on seams at the back. Seams named in ``own`` have those shares instead, see ``seam_share``.
+    Right sides are mirrored, so call this before ``merge_mirrored``.
     """
     known = {each.key: each for each in pieces}
     names = list(dict.fromkeys(each.name for each in pieces))
@@ -41,10 +46,11 @@ def notched(pieces: Sequence[Piece], back: Callable[[Side], bool] = is_back) -> 
         shortest[kind] = min(length, shortest.get(kind, length))
     found: dict[SideKey, tuple[float, ...]] = {}
     for owner, partner in seams:
-        side = _side(owner, known)
-        shares = _shares(
-            shortest[_kind(owner, partner, known)], side.length, back(side) or back(_side(partner, known))
-        )
+        side, other = _side(owner, known), _side(partner, known)
+        shares = own.get(side.name)
+        if shares is None:
+            double = is_back(side) or is_back(other)
+            shares = _shares(shortest[_kind(owner, partner, known)], side.length, double)
         turned = tuple(1.0 - each for each in reversed(shares))
         at_right = known[owner[0]].side == "right"
         found[owner], found[partner] = (turned, shares) if at_right else (shares, turned)
@@ -58,6 +64,20 @@ def notched(pieces: Sequence[Piece], back: Callable[[Side], bool] = is_back) -> 
         )
         for each in pieces
     )
+
+
+def seam_share(pieces: Sequence[Piece], key: SideKey, share: float) -> float:
+    """Return the share of a seam's own notch from its ``share`` of one of the sides that it joins.
+
+    It counts along the side that decides, on the left of the body; ``notched`` needs it so.
+    """
+    known = {each.key: each for each in pieces}
+    partner = _side(key, known).partner
+    names = list(dict.fromkeys(each.name for each in pieces))
+    pair = (key,) if partner is None else (key, partner)
+    owner = min(pair, key=lambda each: _rank(each, known, names))
+    turned = (owner != key) != (known[owner[0]].side == "right")
+    return 1.0 - share if turned else share
 
 
 def _seams_of(piece: Piece, known: dict[str, Piece], names: list[str]) -> list[tuple[SideKey, SideKey]]:

@@ -11,8 +11,8 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from window_tools import Script, run_main, settled, undrawn
 
-from app.gui.features.lines.draw_card import DrawCard
 from app.gui.features.lines.draw_tool import LineDrawTool
+from app.gui.features.lines.line_draw_card import LineDrawCard
 from app.gui.main_window import MainWindow
 from core.control_mesh.path_snapping import Snapped
 from core.control_mesh.template import read_template
@@ -92,7 +92,9 @@ def test_a_line_is_drawn_by_clicks_and_snaps_to_the_control_mesh_on_both_sides()
     run_main([], script)
 
 
-def drawing_begun(window: MainWindow) -> Generator[Callable[[], bool], None, tuple[LineDrawTool, DrawCard]]:
+def drawing_begun(
+    window: MainWindow,
+) -> Generator[Callable[[], bool], None, tuple[LineDrawTool, LineDrawCard]]:
     """Begin to draw a line on the front, and return what draws it and its card once the skin is ready."""
     undrawn(window)
     yield settled(window)

@@ -10,7 +10,7 @@ from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.gui.features.lines.draw_card import DrawCard
+from app.gui.features.lines.line_draw_card import LineDrawCard
 from app.gui.theme.shadow import floating_ground
 from app.gui.theme.stylesheet import Sentence, apply_theme
 from app.gui.widgets.basic import FloatingPanel
@@ -121,7 +121,7 @@ def test_a_shadow_is_painted_once_and_follows_theme_and_size(qapp: QApplication)
 
 @pytest.mark.parametrize("word", ["curve ", "曲線を描きます。"])
 def test_a_card_has_room_for_all_that_it_shows(qtbot: QtBot, word: str) -> None:
-    card = DrawCard()
+    card = LineDrawCard()
     qtbot.addWidget(card)
     card.show()
     for what, keys in ((20, 12), (3, 2), (30, 1)):

@@ -8,7 +8,7 @@ import shapely
 from made_pieces import left_pieces, made_pieces, outline, seam
 
 from core.pattern.allowance import cut_piece
-from core.pattern.notches import DOUBLE, SHARES, SHORT_SHARE, notched
+from core.pattern.notches import DOUBLE, SHARES, SHORT_SHARE, notched, seam_share
 from core.pattern.piece import Piece, mirrored
 
 
@@ -67,7 +67,6 @@ def test_the_last_notch_of_a_seam_at_the_back_is_double():
     places = np.array(one.sides[0].notches) * 100.0
     assert places == pytest.approx([30.0, 62.0 - DOUBLE / 2.0, 62.0 + DOUBLE / 2.0])
     assert len(two.sides[0].notches) == 3
-    assert len(notched(strips(100.0, 100.0, "side seam back"), lambda side: False)[0].sides[0].notches) == 2
 
 
 def test_right_pieces_are_mirror_images_with_their_notches_whatever_the_order_of_pieces():
@@ -114,3 +113,24 @@ def test_without_allowance_a_mark_leads_into_the_piece():
 def test_a_bow_is_as_long_as_asked_for():
     bow = seam((0, 0), (100, 10), 123.0, 1.0)
     assert np.linalg.norm(np.diff(bow, axis=0), axis=1).sum() == pytest.approx(123.0)
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_a_notch_of_ones_own_is_where_it_was_put_on_whichever_piece(order):
+    pieces = made_pieces()[::order]
+    known = {each.key: each for each in pieces}
+    for piece in pieces:
+        for number, side in enumerate(piece.sides):
+            if side.partner is None:
+                continue
+            share = seam_share(pieces, (piece.key, number), 0.2)
+            other, at = side.partner
+            own = {side.name: (share,), known[other].sides[at].name: (share,)}
+            marked = {each.key: each for each in notched(pieces, own)}
+            assert marked[piece.key].sides[number].notches == pytest.approx((0.2,))
+            assert marked[other].sides[at].notches == pytest.approx((0.8,))
+
+
+def test_a_seam_may_have_no_notches_at_all():
+    one, two = notched(strips(100.0, 100.0, "side seam"), {"side seam": ()})
+    assert one.sides[0].notches == two.sides[0].notches == ()

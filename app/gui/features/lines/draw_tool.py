@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PySide6.QtCore import QObject, QPointF, QSignalBlocker
 
+from app.gui.drawing_base import DrawingBase, meshes_of
 from app.gui.features.lines.add_lines import AddLinesController
-from app.gui.features.lines.drawing_base import DrawingBase, meshes_of
+from app.gui.features.lines.line_draw_card import LineDrawCard
 from app.gui.features.lines.panel import LinesPanel
 from app.gui.session.jobs import Job
 from app.i18n.catalog import tr
@@ -41,7 +42,8 @@ class LineDrawTool(QObject):
         super().__init__(context.session)
         self._context, self._add = context, add
         self._viewport = context.view.viewport
-        self._sketching = DrawingBase(context, self)
+        self._card = LineDrawCard(context.view)
+        self._sketching = DrawingBase(context, self, self._card)
         panel.draw_requested.connect(self.begin)
         context.actions.draw_line.triggered.connect(self.begin)
         self._ways: tuple[Body, SurfacePaths] | None = None
@@ -52,7 +54,7 @@ class LineDrawTool(QObject):
         self._found: Laid | None = None
         self._wanted: tuple[list[Points], bool] = ([], False)
         self._again: CustomLine | None = None
-        hand, card = self._sketching.hand, self._sketching.card
+        hand, card = self._sketching.hand, self._card
         hand.clicked.connect(self._click)
         hand.hovered.connect(self._hover)
         hand.requested.connect(
@@ -187,7 +189,7 @@ class LineDrawTool(QObject):
         frame = self._context.session.frame
         if frame is None:
             return False
-        (pieces, closed), snapped = self._wanted, self._sketching.card.snap.isChecked()
+        (pieces, closed), snapped = self._wanted, self._card.snap.isChecked()
         skin, meshes = frame.stages.body.mesh, meshes_of(frame)
         try:
             self._found = lay_curve(skin, meshes, pieces, closed, snapped=snapped, pulling=pulling)
@@ -199,8 +201,8 @@ class LineDrawTool(QObject):
     def _move(self) -> None:
         """Let what was drawn snap to the nearest control points that can pull."""
         if self._found is not None:
-            with QSignalBlocker(self._sketching.card.snap):
-                self._sketching.card.snap.setChecked(True)
+            with QSignalBlocker(self._card.snap):
+                self._card.snap.setChecked(True)
             self._fit(pulling=True)
             self._show()
 
@@ -212,7 +214,7 @@ class LineDrawTool(QObject):
 
     def _keep(self, found: Laid) -> None:
         """Add the line, and its mirror image if that is wished and another line; or give one its course."""
-        session, card, again = self._context.session, self._sketching.card, self._again
+        session, card, again = self._context.session, self._card, self._again
         design = session.design
         if design is None:
             return
@@ -230,7 +232,7 @@ class LineDrawTool(QObject):
     # -- what is seen
 
     def _show(self) -> None:
-        card, found, design = self._sketching.card, self._found, self._context.session.design
+        card, found, design = self._card, self._found, self._context.session.design
         card.both.setVisible(found is not None and self._again is None)
         card.keep.setText(tr("Keep line") if found else tr("Done"))
         card.keep.setEnabled(found is not None or len(self._places) > 1)

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PySide6.QtCore import QObject, QPointF
 
-from app.gui.features.lines.drawing_base import DrawingBase, meshes_of
+from app.gui.drawing_base import DrawingBase, meshes_of
 from app.gui.features.lines.panel import LinesPanel
+from app.gui.viewport.draw_card import DrawCard
 from app.i18n.catalog import tr
 from app.presenters.lines import line_colours, row_title
 from core.document.design import Design
@@ -36,7 +37,7 @@ class LinePathTool(QObject):
     ) -> None:
         super().__init__(context.session)
         self._context, self._draw_again = context, draw_again
-        self._sketching = DrawingBase(context, self)
+        self._sketching = DrawingBase(context, self, DrawCard(context.view))
         panel.path_requested.connect(self.begin)
         self._line: CustomLine | None = None
         self._steps: list[tuple[int, ...]] = []
@@ -78,8 +79,6 @@ class LinePathTool(QObject):
         self._context.selection.select_line(name)
         self._mesh_shown = self._context.view.tools.actions_by_name["control-mesh"].isChecked()
         self._context.view.set_layer("control-mesh", True)
-        for choice in (self._sketching.card.both, self._sketching.card.snap):  # they are of new lines
-            choice.hide()
         self._sketching.begin(frame)
         self._show()
 

@@ -1,13 +1,12 @@
-"""The card that goes with a line while it is drawn: what to do next, how well it lies, keep or leave."""
+"""Card of a drawing tool: what to do next, keep, undo and cancel."""
 
 from __future__ import annotations
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
-from app.gui.theme.stylesheet import font, label
+from app.gui.theme.stylesheet import label
 from app.gui.widgets.basic import FloatingPanel, ToolButton, button, sentence
-from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
 
 WIDTH = 232
@@ -15,12 +14,11 @@ WIDTH = 232
 
 
 class DrawCard(FloatingPanel):
-    """Says what to do; ``accepted``, ``back``, ``closed`` and ``moved`` at its buttons."""
+    """Shows what to do; ``accepted``, ``back`` and ``closed`` at its buttons; ``choices`` has room."""
 
     accepted = Signal()
     back = Signal()
     closed = Signal()
-    moved = Signal()
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -36,23 +34,17 @@ class DrawCard(FloatingPanel):
         self._words = self._what, self._keys
         for words in self._words:
             words.setFixedWidth(WIDTH)
-        self.both = QCheckBox(tr("Mirror the line to the other side and link both"))
-        self.snap = QCheckBox(tr("Snap to control points"))
-        set_tip(self.snap, tr("Snap the line to the nearest control points instead of keeping its curve"))
-        for choice in (self.both, self.snap):
-            choice.setFont(font("body"))
-            choice.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.move_ = button(tr("Move to reshaped region"))
-        self.move_.hide()
-        self.move_.clicked.connect(self.moved)
-        self.keep, self.undo = button(tr("Keep line"), "primary"), button(tr("Undo step"), "quiet")
-        for each in (self.keep, self.undo, self.move_):
-            each.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # a click leaves the keys to the hand that draws
+        self.choices = QVBoxLayout()
+        self.choices.setSpacing(4)
+        self.keep, self.undo = button(tr("Done"), "primary"), button(tr("Undo step"), "quiet")
+        for each in (self.keep, self.undo):
+            each.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # a click leaves the keys to the tool that draws
         self.keep.clicked.connect(self.accepted)
         self.undo.clicked.connect(self.back)
         column.addLayout(head)
-        for part in (self._what, self.move_, self._keys, self.snap, self.both):
+        for part in self._words:
             column.addWidget(part)
+        column.addLayout(self.choices)
         column.addSpacing(4)
         column.addLayout(self._foot())
         self.row.setContentsMargins(28, 20, 24, 28)

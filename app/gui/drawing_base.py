@@ -1,4 +1,4 @@
-"""Common base of drawing a line and editing its path: pointer, sketch on the body, and card."""
+"""Common base of drawing on the body, lines as well as seams: pointer, sketch and card."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PySide6.QtCore import QObject, QPointF, Signal
 
-from app.gui.features.lines.draw_card import DrawCard
+from app.gui.viewport.draw_card import DrawCard
 from app.gui.viewport.drawing_tool import DrawingTool
 from app.rendering.ribbon_mesh import RibbonSurface
 from core.control_mesh.fit import ControlMesh
@@ -37,7 +37,7 @@ class DrawingBase(QObject):
 
     lost = Signal()
 
-    def __init__(self, context: AppContext, owner: QObject) -> None:
+    def __init__(self, context: AppContext, owner: QObject, card: DrawCard) -> None:
         super().__init__(owner)
         self._context = context
         self._viewport = context.view.viewport
@@ -45,7 +45,7 @@ class DrawingBase(QObject):
         canvas = viewport.overlay.parentWidget()
         assert canvas is not None
         self.hand = DrawingTool(viewport, canvas)
-        self.card = DrawCard(context.view)
+        self.card = card
         context.view.place(self.card, "bottom-left")  # beside the body: lines go over its middle
         self._sketch: SketchActor | None = None
         self._surface: tuple[Body, RibbonSurface] | None = None
