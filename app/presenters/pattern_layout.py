@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -11,12 +11,17 @@ import numpy as np
 
 from core.document.block import without_side
 from core.geometry.mesh import Faces, Floats, Indices
+from core.geometry.plane_sections import arc_length, interpolate
 
 if TYPE_CHECKING:
+    from core.pattern.flattening import FlatPanel
     from core.pattern.garment import Pattern
 
 GAP = 14.0
 """Between pieces [mm]."""
+
+NOTCH = 4.0
+"""Length of the mark of a notch [mm]."""
 
 _WIDTHS = 24  # of rows that are tried
 
@@ -27,6 +32,7 @@ class PieceShape:
 
     ``sides`` are name of seam, points (k,), and whether it is walked that way, in order round it. ``middle``
     is where it is on the body: bearing [rad], 0 in front and positive at the subject's left, height [mm].
+    ``notches`` (n, 2, 2) are marks from the sew line inward [mm].
     """
 
     name: str
@@ -37,6 +43,7 @@ class PieceShape:
     sides: tuple[tuple[str, Indices, bool], ...]
     fits: bool
     middle: tuple[float, float]
+    notches: Floats = field(default_factory=lambda: np.empty((0, 2, 2)))
 
     @property
     def size(self) -> Floats:
@@ -52,8 +59,9 @@ class PieceShape:
         return np.asarray(self.points[int((away - 0.3 * off).argmax())])
 
 
-def piece_shapes(pattern: Pattern) -> tuple[PieceShape, ...]:
-    """Return the pieces of a pattern as they are drawn."""
+def piece_shapes(pattern: Pattern, *, notches: bool) -> tuple[PieceShape, ...]:
+    """Return the pieces of a pattern as they are drawn, with or without their notches."""
+    marks = pattern.notches if notches else {}
     every = np.concatenate(pattern.places)
     axis = 0.5 * (every[:, :2].min(axis=0) + every[:, :2].max(axis=0))
     back = {(seam.panels[1], seam.sides[1]) for seam in pattern.matched.seams}
@@ -72,9 +80,22 @@ def piece_shapes(pattern: Pattern) -> tuple[PieceShape, ...]:
                 ),
                 pattern.fits(flat),
                 (float(np.arctan2(x - axis[0], axis[1] - y)), float(z)),
+                _notch_marks(flat, marks),
             )
         )
     return tuple(shapes)
+
+
+def _notch_marks(flat: FlatPanel, marks: Mapping[tuple[str, int], tuple[float, ...]]) -> Floats:
+    found = []
+    for number, side in enumerate(flat.panel.sides):
+        points = flat.points[side.points]
+        along = arc_length(points)
+        for share in marks.get((flat.panel.name, number), ()):
+            place, ahead = interpolate(np.array([0.0, 1.0]) + share * along[-1], along, points)
+            way = (ahead - place) / max(float(np.linalg.norm(ahead - place)), 1e-9)
+            found.append([place, place + NOTCH * np.array([-way[1], way[0]])])
+    return np.array(found).reshape(-1, 2, 2)
 
 
 def arranged(shapes: Sequence[PieceShape], aspect: float) -> Floats:

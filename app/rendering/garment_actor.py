@@ -29,7 +29,7 @@ class GarmentDrawing:
     """What is drawn: ``points`` (n, 3) [mm], ``faces`` (m, 3) and ``colours`` (n, 3) of all panels together.
 
     ``seams`` are drawn thin and ``selected`` ones thick, each (k, 3) [mm]; ``handles`` (h, 3) [mm] are places
-    that can be dragged, ``knob`` (0 or 1, 3) [mm] the place where a seam is walked.
+    that can be dragged, ``knob`` (k, 3) [mm] are the selected one and where a seam is walked.
     """
 
     points: Points

@@ -59,7 +59,7 @@ def _verdict(rows: Sequence[PieceRow]) -> Block:
 
 def _picture(pattern: Pattern, titles: dict[str, str]) -> Block:
     """Return all pieces in one scale, in the order of the body."""
-    shapes = piece_shapes(pattern)
+    shapes = piece_shapes(pattern, notches=False)
     moves = arranged(shapes, WIDE / HIGH)
     outlines = [
         shape.points[np.concatenate([points[:-1] for _, points, _ in shape.sides])] + move

@@ -93,11 +93,12 @@ class SeamDrawing:
 
     def _way(self, stops: list[Points]) -> Points:
         """Return the shortest ways over the skin between places, rounded where they meet."""
-        pieces = [self._shortest(start, end) for start, end in pairwise(stops)]
+        pieces = [self.path(start, end) for start, end in pairwise(stops)]
         whole = np.concatenate([pieces[0], *(piece[1:] for piece in pieces[1:])])
         return smooth(resample(whole, STEP), _ROUNDING, closed=False)
 
-    def _shortest(self, start: Points, end: Points) -> Points:
+    def path(self, start: Points, end: Points) -> Points:
+        """Return the shortest path over the skin between two places (3,), (k, 3) [mm]."""
         key = start.tobytes() + end.tobytes()
         if key not in self._ways:
             if len(self._ways) >= _MOST_WAYS:

@@ -31,12 +31,12 @@ _PART = 3  # points that a part of a panel has at least
 
 
 def with_point(
-    drawing: SeamDrawing, block: Block, curve: str, curves: Sequence[SeamCurve], place: Points
+    drawing: SeamDrawing, block: Block, curve: str, curves: Sequence[SeamCurve], place: Points | None = None
 ) -> Block:
     """Return the block in which a seam has one more point, nearest to ``place`` (3,) [mm].
 
-    ``curves`` are those of the block on the original body. Raises PatternError for a root or ring, KeyError
-    for an unknown curve.
+    Without a place it is in the middle of the longest stretch between two points. ``curves`` are those of the
+    block on the original body. Raises PatternError for a root or ring, KeyError for an unknown curve.
     """
     seam, side = block.seam(curve), side_of(block, curve)
     if seam.kind != WAY:
@@ -47,7 +47,8 @@ def with_point(
     drawn = {each.name: each.points for each in curves}
     points, levels, words = drawn[curve], drawing.levels(block), list(seam.places_of(side))
     nearest = [_nearest(points, drawing.places.place(word, side, levels, drawn)) for word in words]
-    at = _nearest(points, place)
+    longest = int(np.argmax(np.diff(nearest)))
+    at = sum(nearest[longest : longest + 2]) // 2 if place is None else _nearest(points, place)
     number = int(np.searchsorted(nearest[:-1], at, side="right"))
     words.insert(max(number, 1), word_at(drawing.places, side, points[at]))
     return _with_words(block, seam, side, words)

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from pdf_tools import Pdf
-from PySide6.QtCore import QEvent, QPointF, Qt
+from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
 from PySide6.QtGui import QKeyEvent
 from PySide6.QtTest import QTest
 from window_tools import Script, drag, run_main, run_undrawn, settled
@@ -138,10 +138,98 @@ def test_a_seam_is_dragged_by_its_point_on_the_body(mannequin: Path) -> None:
         assert window.session.design.pattern.block.seam("cup seam").places == words
         yield current(window)
         assert lengths(window, "cup seam left") == pytest.approx(after, abs=1e-6)
-        window.pattern.seam_card.reset.click()
+        window.pattern.seam_card.reset.trigger()
         assert window.session.design.pattern.block == find_block("two-part-cup")
         window.pattern.seam_card.knob.setValue(100)
         assert " | " in window.pattern.seam_card.so_far.text(), "both lengths so far"
+
+    run_main([str(mannequin)], script)
+
+
+def spot_of(window: MainWindow, place: np.ndarray) -> QPoint:
+    """Where a place of the original body is seen, (3,) [mm]."""
+    layer = window.pattern_controller.layer
+    x, y = layer._spots(window.view.viewport.scene.carried_points(place[None]))[0]
+    return QPoint(round(x), round(y))
+
+
+def test_points_and_notches_are_added_to_a_seam_and_removed(mannequin: Path) -> None:
+    def script(window: MainWindow) -> Script:
+        yield from chosen(window, "two-part-cup")
+        controller, card, steps = (
+            window.pattern_controller,
+            window.pattern.seam_card,
+            window.session.undo_stack,
+        )
+        layer, canvas = controller.layer, controller.layer._canvas
+        controller.select_seam("cup seam left")
+        garment = controller.result.pattern.garment
+        curve = next(each.points for each in garment.curves if each.name == "cup seam left")
+        QTest.mouseDClick(canvas, Qt.MouseButton.LeftButton, pos=spot_of(window, curve[len(curve) // 4]))
+        yield current(window)
+        assert steps.undoText() == "Point added: Cup seam"
+        assert len(controller.editing.handles()) == 4
+        QTest.mouseClick(
+            canvas, Qt.MouseButton.LeftButton, pos=spot_of(window, controller.editing.handles()[1])
+        )
+        assert layer.handle == 1
+        assert card.remove_point.isEnabled()
+        QTest.keyClick(canvas, Qt.Key.Key_Delete)
+        yield current(window)
+        assert window.session.design.pattern.block == find_block("two-part-cup")
+        assert steps.undoText() == "Point removed: Cup seam"
+        card.knob.setValue(150)
+        card.add_notch.trigger()
+        yield current(window)
+        assert steps.undoText() == "Notch added: Cup seam"
+        pattern = controller.result.pattern
+        seam = next(each for each in pattern.matched.seams if each.name == "cup seam left")
+        shares = [
+            pattern.notches[pattern.flats[panel].panel.name, side]
+            for panel, side in zip(seam.panels, seam.sides, strict=True)
+        ]
+        assert shares[0] == pytest.approx((0.75,))
+        assert shares[1] == pytest.approx((0.25,))
+        assert card.notches.text() == "Notches: 1"
+        controller.editing.set_notches(None)
+        assert window.session.design.pattern.block == find_block("two-part-cup")
+
+    run_main([str(mannequin)], script)
+
+
+def test_a_seam_is_drawn_on_the_body_and_removed(mannequin: Path) -> None:
+    def script(window: MainWindow) -> Script:
+        yield from chosen(window, "one-part-cup")
+        controller, tool, steps = (
+            window.pattern_controller,
+            window.pattern_controller.drawing,
+            window.session.undo_stack,
+        )
+        breast = controller.result.drawing.places.breasts["left"]
+        stops = breast.places(np.array([200.0, 200.0]), np.array([1.0, 0.5]) * breast.root_distance(200.0))
+        window.pattern.draw.click()
+        canvas = controller.layer._canvas
+        for place in (stops[1], stops[0]):
+            QTest.mouseClick(canvas, Qt.MouseButton.LeftButton, pos=spot_of(window, place))
+        assert tool._sketching.card.keep.isEnabled()
+        QTest.keyClick(canvas, Qt.Key.Key_Return)
+        yield lambda: not tool.at_work
+        yield current(window)
+        assert steps.undoText() == "Cup dart drawn"
+        dart = window.session.design.pattern.block.seams[-1]
+        assert dart.slit
+        assert dart.places[0].endswith("> wire"), "its end near the wire is on the wire"
+        assert controller.layer.hand.at_work, "seams are selected again"
+        controller.select_seam("cup dart left")
+        window.pattern.seam_card.remove.trigger()
+        assert window.session.design.pattern.block == find_block("one-part-cup")
+        assert steps.undoText() == "Cup dart removed"
+        yield current(window)
+        tool.begin()
+        QTest.mouseClick(canvas, Qt.MouseButton.LeftButton, pos=spot_of(window, stops[1]))
+        QTest.keyClick(canvas, Qt.Key.Key_Escape)
+        assert not tool.at_work
+        assert window.session.design.pattern.block == find_block("one-part-cup")
 
     run_main([str(mannequin)], script)
 

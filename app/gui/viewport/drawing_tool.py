@@ -17,6 +17,7 @@ _KEYS = {
     Qt.Key.Key_Return: "keep",
     Qt.Key.Key_Enter: "keep",
     Qt.Key.Key_Backspace: "back",
+    Qt.Key.Key_Delete: "back",
     Qt.Key.Key_Escape: "leave",
 }
 
@@ -33,15 +34,16 @@ def keys_in_words() -> list[tuple[str, str]]:
 class DrawingTool(QObject):
     """Listens before the pointer of ``view`` does, while it is ``at_work``.
 
-    ``clicked`` and ``hovered`` carry places on the canvas, ``requested`` one of: keep, back, leave; of these
-    only what it ``takes``. What ``grabs`` takes hold of is ``dragged``, then ``dropped``; any other drag is
-    left to the view.
+    ``clicked``, ``double_clicked`` and ``hovered`` carry places on the canvas, ``requested`` one of: keep,
+    back, leave; of these only what it ``takes``. What ``grabs`` takes hold of is ``dragged``, then
+    ``dropped``; any other drag is left to the view.
     """
 
     clicked = Signal(QPointF)
     hovered = Signal(QPointF)
     dragged = Signal(QPointF)
     dropped = Signal(QPointF)
+    double_clicked = Signal(QPointF)
     requested = Signal(str)
 
     def __init__(self, view: QWidget, canvas: QWidget) -> None:
@@ -87,6 +89,7 @@ class DrawingTool(QObject):
         kind, of_left = event.type(), event.button() == Qt.MouseButton.LeftButton
         left = of_left and not event.modifiers()
         if kind == QEvent.Type.MouseButtonDblClick and left:
+            self.double_clicked.emit(event.position())
             self.requested.emit("keep")
             return True
         if kind == QEvent.Type.MouseButtonPress and left:

@@ -57,6 +57,8 @@ def test_a_point_is_added_where_it_is_and_removed_again(built: Built, side: str)
     away = np.linalg.norm(after[:, None] - before, axis=2).min(axis=1)
     assert away.max() < 3.0, "the seam stays where it was"
     assert without_point(more, name, 2) == block
+    halved = with_point(made, block, name, made.curves(block))
+    assert len(halved.seam(name).places) == 4, "in the middle of its longest stretch"
     with pytest.raises(PatternError, match="ends of a seam"):
         without_point(more, name, 3)
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import Qt, Signal, SignalInstance
+from PySide6.QtGui import QAction
 from PySide6.QtWidgets import (
     QCheckBox,
     QFrame,
@@ -211,12 +212,21 @@ class _FixButton(QFrame):
 
 
 class SeamCard(_Card):
-    """The selected seam: its lengths on the body and on both pieces, its allowance, and a knob to walk it."""
+    """The selected seam: its lengths on the body and on both pieces, its allowance, and a knob to walk it.
+
+    ``walked`` carries the share of the length at the knob [1], ``notch_requested`` that of a new notch,
+    ``notches_changed`` an empty tuple for none or None for the usual ones.
+    """
 
     allowance_changed = Signal(object)
     walked = Signal(object)
-    reset_requested = Signal()
     apart_changed = Signal(bool)
+    reset_requested = Signal()
+    point_requested = Signal()
+    point_removed = Signal()
+    seam_removed = Signal()
+    notch_requested = Signal(object)
+    notches_changed = Signal(object)
 
     def __init__(self) -> None:
         super().__init__()
@@ -227,7 +237,9 @@ class SeamCard(_Card):
         self._cells: list[QLabel] = []
         self.note = sentence("", "secondary")
         set_tag(self.note, "tone", "warn")
-        self.hint = sentence(tr("Drag the points of the seam on the body to move it."), "caption")
+        self.hint = sentence(
+            tr("Drag points on the body to move them; double-click the seam to add one."), "caption"
+        )
         amount = length_amount("allowance", tr("Seam allowance"), "", (0.0, LARGEST_ALLOWANCE), optional=True)
         self.allowance = AmountEdit(amount)
         self.allowance.entered.connect(self.allowance_changed.emit)
@@ -236,16 +248,36 @@ class SeamCard(_Card):
         tip = tr("Leave empty to use the allowance of the pattern")
         self.add_field(amount.title, tip, self.allowance)
         self.column.addLayout(self._make_walk())
+        self.column.addLayout(self._make_menus())
         self.apart = QCheckBox(tr("Edit sides separately"))
         self.apart.setFont(font("secondary"))
         set_tip(self.apart, tr("Move points of the left and right seam separately"))
         self.apart.clicked.connect(self.apart_changed)
         self.column.addWidget(self.apart)
         self.column.addWidget(self.hint)
-        self.reset = button(tr("Reset seam"))
-        set_tip(self.reset, tr("Restore the points of the block"))
-        self.reset.clicked.connect(self.reset_requested)
-        self.column.addWidget(self.reset, alignment=Qt.AlignmentFlag.AlignLeft)
+
+    def _make_menus(self) -> QHBoxLayout:
+        row = QHBoxLayout()
+        row.setSpacing(6)
+        self.edit, menu = OptionCombo(), Menu(self)
+        self.edit.setText(tr("Edit seam"))
+        self.edit.clicked.connect(lambda: pull_down(menu, self.edit))
+        self.add_point = _entry(menu, tr("Add point"), self.point_requested)
+        self.remove_point = _entry(menu, tr("Remove point"), self.point_removed)
+        self.reset = _entry(menu, tr("Reset seam"), self.reset_requested)
+        self.remove = _entry(menu, tr("Remove seam"), self.seam_removed)
+        self.notches, marks = OptionCombo(), Menu(self)
+        self.notches.clicked.connect(lambda: pull_down(marks, self.notches))
+        self.add_notch = marks.addAction(tr("Add notch at the knob"))
+        self.add_notch.triggered.connect(lambda: self.notch_requested.emit(self.knob.value() / STEPS))
+        none, usual = marks.addAction(tr("No notches")), marks.addAction(tr("Default notches"))
+        none.triggered.connect(lambda: self.notches_changed.emit(()))
+        usual.triggered.connect(lambda: self.notches_changed.emit(None))
+        for each in (self.edit, self.notches):
+            each.setMinimumHeight(28)
+            row.addWidget(each)
+        row.addStretch(1)
+        return row
 
     def _make_walk(self) -> QHBoxLayout:
         row = QHBoxLayout()
@@ -277,13 +309,18 @@ class SeamCard(_Card):
         self.allowance.setPlaceholderText(length_number(usual, 1))
         self.apart.setVisible(seam.each and seam.kind == WAY)
         self.apart.setChecked(bool(seam.right))
-        self.reset.setVisible(can_reset)
+        self.reset.setEnabled(can_reset)
+        self.add_point.setEnabled(seam.kind == WAY)
+        count = None if seam.notches is None else len(seam.notches)
+        words = tr("Notches: default") if count is None else tr("Notches: {count}").format(count=count)
+        self.notches.setText(words)
 
     def _show_rows(self, rows: Sequence[SeamRow] | None) -> None:
         if rows is None:
             self.note.hide()
             self._show_lines([])
             return
+        self.add_notch.setEnabled(bool(rows))
         self.note.setText(" ".join(row.note for row in rows if row.note))
         self.note.setVisible(bool(self.note.text()))
         lines: list[tuple[str, str]] = []
@@ -311,6 +348,13 @@ class SeamCard(_Card):
             self._grid.addWidget(words, at, 0)
             self._grid.addWidget(figure, at, 1, _RIGHT)
             self._cells += [words, figure]
+
+
+def _entry(menu: Menu, text: str, signal: SignalInstance) -> QAction:
+    """Add an entry to a menu that emits a signal."""
+    action = menu.addAction(text)
+    action.triggered.connect(lambda _=False: signal.emit())
+    return action
 
 
 def _emitting(emit: Callable[[int], Any], place: int) -> Callable[[], None]:

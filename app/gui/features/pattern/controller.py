@@ -13,6 +13,7 @@ from app.gui.features.pattern.garment_layer import GarmentLayer, GarmentSeams, v
 from app.gui.features.pattern.panel import PatternPanel
 from app.gui.features.pattern.piece_fixes import PieceFixes
 from app.gui.features.pattern.pieces_view import PiecesView, strain_ramp
+from app.gui.features.pattern.seam_drawing import SeamDrawTool
 from app.gui.features.pattern.seam_editing import SeamEditing
 from app.gui.features.pattern.worker import PatternRequest, PatternResult, PatternWorker
 from app.gui.theme.stylesheet import tokens_of
@@ -61,6 +62,7 @@ class PatternController(QObject):
         self.is_open = False
         self._framed = ""  # the block that the camera was moved to
         self.editing = SeamEditing(context, self)
+        self.drawing = SeamDrawTool(context, self)
         self.files, self.fixes = PatternExport(context, self), PieceFixes(context, self)
         panel.set_blocks([(each.name, block_title(each), block_about(each)) for each in built_in_blocks()])
         self._connect()
@@ -97,11 +99,16 @@ class PatternController(QObject):
             action = do.add("blocks", block_title(block), of_document=True)
             action.triggered.connect(lambda _=False, block=block: self._choose_and_show(block))
         do.rule("blocks")
+        do.add("blocks", tr("Draw seam or dart"), do=self._draw, of_document=True)
         do.add("blocks", tr("Export pieces…"), do=self._export, of_document=True)
 
     def _choose_and_show(self, block: Block) -> None:
         self._context.navigation.show_step(STEP)
         self.choose_block(block)
+
+    def _draw(self) -> None:
+        self._context.navigation.show_step(STEP)
+        self.drawing.begin()
 
     def _export(self) -> None:
         self._context.navigation.show_step(STEP)
@@ -271,7 +278,13 @@ class PatternController(QObject):
         result, plan = self.result, self.plan
         current = self.is_current()
         self.view.set_faint(result is not None and not current and not self.editing.carries)
-        self.panel.export.setEnabled(current)
+        for each in (
+            self.panel.export,
+            self.panel.draw,
+            self.panel.seam_card.edit,
+            self.panel.seam_card.notches,
+        ):
+            each.setEnabled(current)
         if plan is None:
             self.view.show_words(tr("Choose a garment block to see its pieces here."))
         elif self._failure:

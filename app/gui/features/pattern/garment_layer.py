@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from app.rendering.garment_actor import GarmentActor
     from core.pattern.garment import Pattern
 
+_CLICK = 3.0  # pixels that the pointer may stray within a click
 _NEAR, _GRIP = 8.0, 13.0  # how near to a seam and to one of its points the pointer means it [px]
 
 
@@ -57,8 +58,10 @@ class GarmentLayer(QObject):
     """Draws the garment, and listens to the pointer while it is ``at_work``.
 
     ``seam_chosen``, ``piece_chosen`` and ``seam_hovered`` carry names, empty for none; ``moved`` the number
-    of a point of the selected seam and where it is dragged to on the body at rest, (3,) [mm], then
-    ``dropped`` or ``cancelled``.
+    of a point of the selected seam and where it is dragged to on the original body, (3,) [mm], then
+    ``dropped`` or ``cancelled``. A click on a point selects it as ``handle`` (``handle_chosen``), Delete
+    requests its removal (``point_removed``), a double click on the seam a new one (``point_requested``,
+    (3,) [mm]).
     """
 
     seam_chosen = Signal(str)
@@ -67,6 +70,9 @@ class GarmentLayer(QObject):
     moved = Signal(int, object)
     dropped = Signal()
     cancelled = Signal()
+    handle_chosen = Signal()
+    point_requested = Signal(object)
+    point_removed = Signal()
 
     def __init__(self, context: AppContext) -> None:
         super().__init__(context.session)
@@ -80,6 +86,7 @@ class GarmentLayer(QObject):
         self.hand.hovered.connect(self._hover)
         self.hand.dragged.connect(self._drag)
         self.hand.dropped.connect(self._drop)
+        self.hand.double_clicked.connect(self._request_point)
         self.hand.requested.connect(self._press)
         self._actor: GarmentActor | None = None
         self.seams: GarmentSeams | None = None
@@ -89,6 +96,8 @@ class GarmentLayer(QObject):
         self._knob: Points = np.empty((0, 3))
         self._marks: tuple[Points, ...] = ()
         self._held: int | None = None
+        self._moved, self._pressed = False, QPointF()
+        self.handle: int | None = None
         self._redraw = QTimer(self, interval=0, singleShot=True)  # what changes together is drawn once
         self._redraw.timeout.connect(self._draw)
 
@@ -123,7 +132,9 @@ class GarmentLayer(QObject):
         self._redraw.start()
 
     def select(self, seam: str, handles: Points) -> None:
-        """Mark a seam, with its points on the body at rest that can be dragged, (h, 3) [mm]."""
+        """Mark a seam, with its points on the original body that can be dragged, (h, 3) [mm]."""
+        if seam != self.seam or len(handles) != len(self._handles):
+            self.handle = None
         self.seam, self._handles = seam, handles
         self._redraw.start()
 
@@ -162,8 +173,9 @@ class GarmentLayer(QObject):
         marked = [curve for name in {self.seam, self._hovered} for curve in self.seams.curves.get(name, ())]
         marked += self._marks
         plain = [curve for curves in self.seams.curves.values() for curve in curves]
+        points = [self._knob] if self.handle is None else [self._knob, handles[[self.handle]]]
         drawn = GarmentDrawing(
-            self.seams.points, self.seams.faces, self._colours, plain, marked, handles, self._knob
+            self.seams.points, self.seams.faces, self._colours, plain, marked, handles, np.concatenate(points)
         )
         self._actor.show(drawn)
         self._viewport.request_draw()
@@ -221,23 +233,43 @@ class GarmentLayer(QObject):
             self.seam_hovered.emit(seam)
 
     def _grabs(self, spot: QPointF) -> bool:
-        self._held = self._handle_at(spot)
+        self._held, self._moved, self._pressed = self._handle_at(spot), False, spot
         return self._held is not None
 
     def _drag(self, spot: QPointF) -> None:
+        if not self._moved and (spot - self._pressed).manhattanLength() <= _CLICK:
+            return
         rest = self._viewport.skin_at(spot)
         if self._held is not None and rest is not None:
+            self._moved = True
             self.moved.emit(self._held, rest)
 
     def _drop(self, _: QPointF) -> None:
-        if self._held is not None:
-            self._held = None
+        if self._held is None:
+            return
+        held, self._held = self._held, None
+        if self._moved:
             self.dropped.emit()
+            return
+        self.handle = held
+        self._redraw.start()
+        self.handle_chosen.emit()
+
+    def _request_point(self, spot: QPointF) -> None:
+        rest = self._viewport.skin_at(spot)
+        if rest is not None and self.seam and self.seam_at(spot) == self.seam:
+            self.point_requested.emit(rest)
 
     def _takes(self, request: str) -> bool:
+        if request == "back":
+            return self.handle is not None
         return request == "leave" and bool(self.seam or self._held is not None)
 
-    def _press(self, _: str) -> None:
+    def _press(self, request: str) -> None:
+        if request == "back" and self.handle is not None:
+            self.point_removed.emit()
+        if request != "leave":
+            return
         if self._held is not None:
             self._held = None
             self.cancelled.emit()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import Signal
+from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QStackedWidget, QVBoxLayout, QWidget
 
 from app.gui.features.pattern.cards import PieceCard, SeamCard
@@ -35,6 +35,7 @@ class PatternPanel(QStackedWidget):
     piece_chosen = Signal(str)
     allowance_changed = Signal(float)
     bridged_changed = Signal(bool)
+    draw_requested = Signal()
     export_requested = Signal()
     lines_requested = Signal()
 
@@ -144,7 +145,11 @@ class PatternPanel(QStackedWidget):
             tr("Span cleavage, overhang and cleft instead of following the skin"),
         )
         self.bridged.clicked.connect(self.bridged_changed)
+        self.draw = button(tr("Draw seam or dart"))
+        set_tip(self.draw, tr("Divide pieces by a seam, or add a dart, drawn on the body"))
+        self.draw.clicked.connect(self.draw_requested)
         column.addWidget(self.bridged)
+        column.addWidget(self.draw, alignment=Qt.AlignmentFlag.AlignLeft)
         return column
 
     def _make_foot(self) -> QWidget:

@@ -325,6 +325,7 @@ class PiecesView(QWidget):
         painter.setBrush(Qt.BrushStyle.NoBrush)
         painter.setPen(QPen(QColor(edge), 2.0 if shape.name == self.piece else 1.2))
         painter.drawPolygon(_polygon(self._spots(shape.points[outline] + move)))
+        self._paint_notches(painter, shape, move)
         for name, points, forward in shape.sides:
             if name not in (self.seam, self.hovered) or not name:
                 continue
@@ -335,6 +336,11 @@ class PiecesView(QWidget):
             painter.drawPolyline(_polygon(spots))
             if name == self.seam and self._knob is not None:
                 self._paint_knob(painter, _walked(shape.points[points], self._knob, forward) + move)
+
+    def _paint_notches(self, painter: QPainter, shape: PieceShape, move: Floats) -> None:
+        painter.setPen(QPen(QColor(tokens_of(self).text), 1.2))
+        for mark in shape.notches:
+            painter.drawPolyline(_polygon(self._spots(mark + move)))
 
     def _paint_knob(self, painter: QPainter, place: Floats) -> None:
         tokens, (x, y) = tokens_of(self), self._spots(place[None])[0]

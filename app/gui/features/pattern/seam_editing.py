@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -25,7 +26,8 @@ from core.pattern.cloth_library import find_cloth, with_cloth
 if TYPE_CHECKING:
     from app.gui.context import AppContext
     from app.gui.features.pattern.controller import PatternController
-    from core.pattern.garment import Pattern
+    from core.pattern.garment import CutGarment, Pattern
+    from core.pattern.seam_curves import SeamDrawing
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,9 +50,18 @@ class SeamEditing(QObject):
         layer.moved.connect(self._move)
         layer.dropped.connect(self._drop)
         layer.cancelled.connect(self._cancel)
-        panel.seam_card.allowance_changed.connect(self.set_allowance)
-        panel.seam_card.reset_requested.connect(self.reset)
-        panel.seam_card.apart_changed.connect(self.set_apart)
+        layer.handle_chosen.connect(self._show_handle)
+        layer.point_requested.connect(self.add_point)
+        layer.point_removed.connect(self.remove_point)
+        card = panel.seam_card
+        card.point_requested.connect(self.add_point)
+        card.point_removed.connect(self.remove_point)
+        card.seam_removed.connect(self.remove_seam)
+        card.notch_requested.connect(self.add_notch)
+        card.notches_changed.connect(self.set_notches)
+        card.allowance_changed.connect(self.set_allowance)
+        card.reset_requested.connect(self.reset)
+        card.apart_changed.connect(self.set_apart)
         panel.piece_card.cloth_chosen.connect(self.choose_cloth)
         panel.piece_card.turn_changed.connect(self.turn)
 
@@ -155,6 +166,74 @@ class SeamEditing(QObject):
         plan = self._controller.plan
         assert plan is not None
         self._controller.change(text, block=plan.block.with_seam(seam))
+
+    # -- points, notches, and the whole seam
+
+    def _show_handle(self) -> None:
+        """Let the selected point be removed, if it is not an end."""
+        layer = self._controller.layer
+        inner = layer.handle is not None and 0 < layer.handle < len(self.handles()) - 1
+        self._controller.panel.seam_card.remove_point.setEnabled(inner)
+
+    def add_point(self, place: Points | None = None) -> None:
+        """Add a point to the selected seam, at a place (3,) [mm] or in the middle of its longest stretch."""
+        from core.pattern.seam_edits import with_point  # noqa: PLC0415 (takes 0.1 s to load)
+
+        self._change_block(
+            tr("Point added: {seam}"),
+            lambda garment, drawing, name: with_point(drawing, garment.block, name, garment.curves, place),
+        )
+
+    def remove_point(self) -> None:
+        """Remove the selected point of the seam."""
+        from core.pattern.seam_edits import without_point  # noqa: PLC0415 (takes 0.1 s to load)
+
+        number_ = self._controller.layer.handle
+        if number_ is not None:
+            self._change_block(
+                tr("Point removed: {seam}"),
+                lambda garment, _, name: without_point(garment.block, name, number_),
+            )
+
+    def remove_seam(self) -> None:
+        """Remove the selected seam; the pieces on both sides of it become one."""
+        from core.pattern.seam_edits import without_seam  # noqa: PLC0415 (takes 0.1 s to load)
+
+        self._change_block(tr("{seam} removed"), lambda garment, _, name: without_seam(garment, name))
+
+    def add_notch(self, share: float) -> None:
+        """Add a notch to the selected seam at a share of its length [1]."""
+
+        def changed(garment: CutGarment, _: SeamDrawing, name: str) -> Block:
+            seam, result = garment.block.seam(name), self._controller.result
+            assert result is not None
+            sewn = next(each for each in result.pattern.matched.seams if each.name == name)
+            kept = round(result.pattern.notch_share(sewn, min(max(share, 0.01), 0.99)), 3)
+            notches = tuple(sorted({*(seam.notches or ()), kept}))
+            return garment.block.with_seam(replace(seam, notches=notches))
+
+        self._change_block(tr("Notch added: {seam}"), changed)
+
+    def set_notches(self, notches: tuple[float, ...] | None) -> None:
+        """Set the notches of the selected seam: none, or the usual ones for None."""
+
+        def changed(garment: CutGarment, _: SeamDrawing, name: str) -> Block:
+            return garment.block.with_seam(replace(garment.block.seam(name), notches=notches))
+
+        self._change_block(tr("Notches changed: {seam}"), changed)
+
+    def _change_block(self, text: str, change: Callable[[CutGarment, SeamDrawing, str], Block]) -> None:
+        """Change the block by the selected seam as one undo step; a refusal is shown and changes nothing."""
+        controller = self._controller
+        result, name = controller.result, controller.seam
+        if result is None or not name or not controller.is_current():
+            return
+        try:
+            block = change(result.pattern.garment, result.drawing, name)
+        except (UserError, KeyError) as error:
+            self._notifications.error(error, "pattern")
+            return
+        controller.change(text.format(seam=seam_title(without_side(name)[0])), block=block)
 
     # -- the selected piece
 

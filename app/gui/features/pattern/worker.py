@@ -118,5 +118,10 @@ class PatternWorker(QObject):
             assert live.drawing is not None
             seams = seam_rows(pattern) if request.final else None
             return PatternResult(
-                request, pattern, live.drawing, piece_rows(pattern), piece_shapes(pattern), seams
+                request,
+                pattern,
+                live.drawing,
+                piece_rows(pattern),
+                piece_shapes(pattern, notches=request.final),
+                seams,
             )
