@@ -20,7 +20,7 @@ SELECTED = {False: "#2459CF", True: "#8DB0FF"}
 
 _OFF = 0.8  # how far cloth and seams are drawn off the skin [mm]
 _THIN, _THICK = 1.6, 4.0  # a seam and a selected one [px]
-_POINT = 11.0  # the place of a seam [px]
+_HANDLE, _KNOB = 3.4, 4.0  # radius of the points of a seam, and of the selected one [mm]
 _NEARER = -60.0  # about 2 mm: seams are drawn over the cloth that they lie on
 
 
@@ -70,8 +70,8 @@ class GarmentActor:
             self._names = self._names[:1]
             self._lines("garment seams", drawn.seams, _THIN, SEAM[self._dark])
         self._lines("garment selected", drawn.selected, _THICK, SELECTED[self._dark])
-        self._dots("garment handles", drawn.handles, "#FFFFFF")
-        self._dots("garment knob", drawn.knob, SELECTED[self._dark])
+        self._balls("garment handles", drawn.handles, "#FFFFFF", _HANDLE)
+        self._balls("garment knob", drawn.knob, SELECTED[self._dark], _KNOB)
 
     def clear(self) -> None:
         """Remove the garment."""
@@ -110,31 +110,16 @@ class GarmentActor:
         actor.mapper.SetResolveCoincidentTopologyToPolygonOffset()
         actor.mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0.0, _NEARER)
 
-    def _dots(self, name: str, places: Points, colour: str) -> None:
-        if not len(places):
-            return
-        rim = self._add(
-            f"{name} rim",
-            pv.PolyData(places.astype(np.float32)),
-            color=SELECTED[self._dark],
-            point_size=(_POINT + 4.0) * self._ratio,
-            render_points_as_spheres=True,
-        )
-        dot = self._add(
-            name,
-            pv.PolyData(places.astype(np.float32)),
-            color=colour,
-            point_size=_POINT * self._ratio,
-            render_points_as_spheres=True,
-        )
-        for actor, nearer in ((rim, _NEARER - 6.0), (dot, _NEARER - 12.0)):
-            actor.mapper.SetResolveCoincidentTopologyToPolygonOffset()
-            actor.mapper.SetRelativeCoincidentTopologyPointOffsetParameter(nearer)
+    def _balls(self, name: str, places: Points, colour: str, radius: float) -> None:
+        if len(places):
+            cloud = pv.PolyData(places.astype(np.float32))
+            balls = cloud.glyph(geom=pv.Icosphere(radius=radius, nsub=2), orient=False, scale=False)
+            self._add(name, balls, color=colour, lighting=True, ambient=0.55, smooth_shading=True)
 
     def _add(self, name: str, data: pv.PolyData, **look: object) -> pv.Actor:
         self._names.append(name)
         actor = self._plotter.add_mesh(
-            data, name=name, lighting=False, reset_camera=False, render=False, **look
+            data, name=name, reset_camera=False, render=False, **{"lighting": False, **look}
         )
         actor.SetPickable(False)
         return actor
