@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from core.document.block import without_side
 from core.geometry.mesh import Faces, Floats, Indices
-from core.geometry.plane_sections import arc_length, interpolate
+from core.geometry.plane_sections import arc_length
 
 if TYPE_CHECKING:
     from core.pattern.flattening import FlatPanel
@@ -32,7 +32,8 @@ class PieceShape:
 
     ``sides`` are name of seam, points (k,), and whether it is walked that way, in order round it. ``middle``
     is where it is on the body: bearing [rad], 0 in front and positive at the subject's left, height [mm].
-    ``notches`` (n, 2, 2) are marks from the sew line inward [mm].
+    ``partners`` are the piece and the number of the side that each side is sewn to, ``notches`` (n, 2, 2)
+    marks from the sew line inward [mm].
     """
 
     name: str
@@ -43,6 +44,7 @@ class PieceShape:
     sides: tuple[tuple[str, Indices, bool], ...]
     fits: bool
     middle: tuple[float, float]
+    partners: tuple[tuple[str, int] | None, ...] = ()
     notches: Floats = field(default_factory=lambda: np.empty((0, 2, 2)))
 
     @property
@@ -80,6 +82,7 @@ def piece_shapes(pattern: Pattern, *, notches: bool) -> tuple[PieceShape, ...]:
                 ),
                 pattern.fits(flat),
                 (float(np.arctan2(x - axis[0], axis[1] - y)), float(z)),
+                tuple(side.partner for side in flat.panel.sides),
                 _notch_marks(flat, marks),
             )
         )
@@ -89,13 +92,45 @@ def piece_shapes(pattern: Pattern, *, notches: bool) -> tuple[PieceShape, ...]:
 def _notch_marks(flat: FlatPanel, marks: Mapping[tuple[str, int], tuple[float, ...]]) -> Floats:
     found = []
     for number, side in enumerate(flat.panel.sides):
-        points = flat.points[side.points]
-        along = arc_length(points)
         for share in marks.get((flat.panel.name, number), ()):
-            place, ahead = interpolate(np.array([0.0, 1.0]) + share * along[-1], along, points)
-            way = (ahead - place) / max(float(np.linalg.norm(ahead - place)), 1e-9)
+            place, way = _along(flat.points[side.points], share)
             found.append([place, place + NOTCH * np.array([-way[1], way[0]])])
     return np.array(found).reshape(-1, 2, 2)
+
+
+def joined_at(shapes: Sequence[PieceShape], seam: str, share: float) -> tuple[PieceShape, ...]:
+    """Return the two pieces of a seam laid edge to edge at a share of its length [1]; none for an edge.
+
+    The second is moved without stretching: at that place its edge touches that of the first, in line with it.
+    Of a seam that joins several pairs of pieces the longest stretch is taken.
+    """
+    known = {shape.name: shape for shape in shapes}
+    pairs = [
+        (len(points), shape, points, partner)
+        for shape in shapes
+        for (name, points, forward), partner in zip(shape.sides, shape.partners, strict=True)
+        if name == seam and forward and partner is not None
+    ]
+    if not pairs:
+        return ()
+    _, first, points, (name, number) = max(pairs, key=lambda pair: pair[0])
+    second = known[name]
+    others = second.sides[number][1]
+    place, ahead = _along(first.points[points], share)
+    other, back = _along(second.points[others], 1.0 - share)
+    cos, sin = float(-ahead @ back), float(back[0] * -ahead[1] + back[1] * ahead[0])
+    turn = np.array([[cos, sin], [-sin, cos]])
+    points, notches = ((each - other) @ turn + place for each in (second.points, second.notches))
+    return first, replace(second, points=points, notches=notches)
+
+
+def _along(points: Floats, share: float) -> tuple[Floats, Floats]:
+    """Return the place at a share of the length of a side and the unit direction there, (2,) and (2,)."""
+    along = arc_length(points)
+    at = int(np.clip(np.searchsorted(along, share * along[-1], side="right") - 1, 0, len(along) - 2))
+    step = points[at + 1] - points[at]
+    way = step / max(float(np.linalg.norm(step)), 1e-9)
+    return points[at] + (share * along[-1] - along[at]) * way, way
 
 
 def arranged(shapes: Sequence[PieceShape], aspect: float) -> Floats:

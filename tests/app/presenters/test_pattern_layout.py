@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
 import pytest
 
-from app.presenters.pattern_layout import GAP, PieceShape, arranged
+from app.presenters.pattern_layout import GAP, PieceShape, arranged, joined_at
 
 
 def box(name: str, width: float, height: float, bearing: float, z: float) -> PieceShape:
@@ -71,3 +72,26 @@ def test_a_title_stands_within_its_piece() -> None:
         (0, 0),
     )
     assert 40.0 < np.hypot(*hook.label_place) < 60.0
+
+
+@pytest.mark.parametrize("share", [0.0, 0.25, 0.9])
+def test_two_pieces_are_laid_edge_to_edge_where_a_seam_is_walked(share: float) -> None:
+    first, second = box("one", 80, 60, 0.0, 0.0), box("two", 50, 90, 7.0, 30.0)
+    first = replace(
+        first,
+        sides=(("hem", np.array([0, 1]), True), *first.sides[1:]),
+        partners=(("two", 1), None, None, None),
+    )
+    second = replace(
+        second,
+        sides=(second.sides[0], ("hem", np.array([1, 2]), False), *second.sides[2:]),
+        partners=(None, ("one", 0), None, None),
+    )
+    one, two = joined_at([second, first], "hem", share)
+    assert one is first
+    here = one.points[0] + share * (one.points[1] - one.points[0])
+    there = two.points[2] + share * (two.points[1] - two.points[2])
+    assert there == pytest.approx(here)
+    assert two.points[:, 1].max() == pytest.approx(0.0), "below the edge that it is sewn to"
+    assert np.ptp(two.points, axis=0) == pytest.approx([90.0, 50.0]), "turned, not stretched"
+    assert joined_at([second, first], "side 2", share) == (), "an edge has no other piece"

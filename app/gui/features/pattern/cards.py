@@ -221,6 +221,7 @@ class SeamCard(_Card):
     allowance_changed = Signal(object)
     walked = Signal(object)
     apart_changed = Signal(bool)
+    joined_changed = Signal(bool)
     reset_requested = Signal()
     point_requested = Signal()
     point_removed = Signal()
@@ -248,6 +249,11 @@ class SeamCard(_Card):
         tip = tr("Leave empty to use the allowance of the pattern")
         self.add_field(amount.title, tip, self.allowance)
         self.column.addLayout(self._make_walk())
+        self.joined = QCheckBox(tr("Pieces edge to edge"))
+        self.joined.setFont(font("secondary"))
+        set_tip(self.joined, tr("Lay the two pieces edge to edge at the knob, to check corners and curves"))
+        self.joined.clicked.connect(self.joined_changed)
+        self.column.addWidget(self.joined)
         self.column.addLayout(self._make_menus())
         self.apart = QCheckBox(tr("Edit sides separately"))
         self.apart.setFont(font("secondary"))
@@ -321,6 +327,7 @@ class SeamCard(_Card):
             self._show_lines([])
             return
         self.add_notch.setEnabled(bool(rows))
+        self.joined.setEnabled(bool(rows))
         self.note.setText(" ".join(row.note for row in rows if row.note))
         self.note.setVisible(bool(self.note.text()))
         lines: list[tuple[str, str]] = []

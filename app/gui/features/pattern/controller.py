@@ -90,6 +90,7 @@ class PatternController(QObject):
         view.theme_changed.connect(self._show_theme)
         layer.seam_hovered.connect(view.hover)
         panel.seam_card.walked.connect(self._walk)
+        panel.seam_card.joined_changed.connect(view.join)
 
     def _add_actions(self) -> None:
         """List the blocks in the menu of lines, so that each can be asked for by its name."""

@@ -26,7 +26,7 @@ from app.gui.theme.stylesheet import font, tokens_of
 from app.gui.widgets.basic import announce
 from app.gui.widgets.tooltip import watch_tip
 from app.i18n.catalog import number, tr
-from app.presenters.pattern_layout import PieceShape, arranged
+from app.presenters.pattern_layout import PieceShape, arranged, joined_at
 from app.rendering.palette import MAP_LESS, MAP_MORE
 from app.rendering.vertex_colors import Ramp
 from core.geometry.mesh import Floats, Points
@@ -70,6 +70,8 @@ class PiecesView(QWidget):
         self.setMinimumWidth(220)
         watch_tip(self)
         self._shapes: tuple[PieceShape, ...] = ()
+        self._all: tuple[PieceShape, ...] = ()
+        self._joined = False
         self._titles: Mapping[str, str] = {}
         self._values: Mapping[str, str] = {}
         self._moves = np.zeros((0, 2))
@@ -98,9 +100,12 @@ class PiecesView(QWidget):
         """
         names = tuple(shape.name for shape in shapes)
         fresh = names != self._names
-        self._shapes, self._titles, self._values, self._names = tuple(shapes), titles, values, names
+        self._all, self._titles, self._values, self._names = tuple(shapes), titles, values, names
+        self._choose_shapes()
         if fresh:
             self._by_hand = False
+            self._arrange()
+        elif len(self._moves) != len(self._shapes):
             self._arrange()
         elif not self._by_hand:
             self._fit()
@@ -119,8 +124,27 @@ class PiecesView(QWidget):
 
     def select(self, piece: str, seam: str) -> None:
         """Mark a piece and a seam; an empty name marks none."""
+        other = seam != self.seam
         self.piece, self.seam = piece, seam
+        if self._joined and other:
+            self._show_joined()
         self.update()
+
+    def join(self, on: bool) -> None:
+        """Lay the two pieces of the selected seam edge to edge at the knob, or show all pieces."""
+        self._joined = on
+        self._show_joined()
+
+    def _show_joined(self) -> None:
+        self._choose_shapes()
+        self._by_hand = False
+        self._arrange()
+        self._redraw()
+
+    def _choose_shapes(self) -> None:
+        """Show all pieces, or those that are laid edge to edge."""
+        joined = joined_at(self._all, self.seam, self._knob or 0.0) if self._joined else ()
+        self._shapes = joined or self._all
 
     def hover(self, seam: str) -> None:
         """Mark the seam under the pointer, here or on the body."""
@@ -131,12 +155,18 @@ class PiecesView(QWidget):
     def walk(self, share: float | None) -> None:
         """Show a knob at a share of the length of the selected seam on all its pieces, or none."""
         self._knob = share
+        if self._joined:
+            self._choose_shapes()
+            self._redraw()
         self.update()
 
     # -- where things are
 
     def _arrange(self) -> None:
-        self._moves = arranged(self._shapes, max(self.width(), 1) / max(self.height(), 1))
+        if self._shapes is self._all:
+            self._moves = arranged(self._shapes, max(self.width(), 1) / max(self.height(), 1))
+        else:
+            self._moves = np.zeros((len(self._shapes), 2))
         self._fit()
 
     def _fit(self) -> None:
