@@ -162,6 +162,7 @@ class MainWindow(QMainWindow):
         self._make_garment()
         self._make_target_shape()
         self.pattern_controller = PatternController(self.context, self.pattern, self.pieces)
+        self._collect_carriers()
         self._make_help()
         self.preferences_controller = PreferencesController(self.context, self.project_controller.may_leave)
         self.rail.add_tool("gear-six", self.preferences_controller.open)
@@ -245,13 +246,17 @@ class MainWindow(QMainWindow):
         self.elastics_controller = ElasticsController(context, self.garment)
 
     def _make_target_shape(self) -> None:
-        """Make the targets; while something is dragged, nothing is waited for."""
+        """Make the targets."""
         self.target_shape_controller = TargetShapeController(self.context, self.lines_page, self.undo_group)
+
+    def _collect_carriers(self) -> None:
+        """Collect what drags something: meanwhile nothing is waited for."""
         carriers = (
             self.landmarks_controller,
             self.band_drag_controller,
             self.sections_controller,
             self.target_shape_controller.handles,
+            self.pattern_controller.editing,
         )
         self.progress_controller.carriers += carriers
         for carrier in carriers:

@@ -30,6 +30,8 @@ _WIDTHS = 24  # of rows that are tried
 class PieceShape:
     """A piece as it is drawn: ``points`` (p, 2) [mm] with y up, ``faces`` (m, 3), ``strain`` of each, (m,).
 
+    ``worn`` (m, 2) is the stretch of each when worn, with the ease, across and down [1].
+
     ``sides`` are name of seam, points (k,), and whether it is walked that way, in order round it. ``middle``
     is where it is on the body: bearing [rad], 0 in front and positive at the subject's left, height [mm].
     ``partners`` are the piece and the number of the side that each side is sewn to, ``notches`` (n, 2, 2)
@@ -44,6 +46,7 @@ class PieceShape:
     sides: tuple[tuple[str, Indices, bool], ...]
     fits: bool
     middle: tuple[float, float]
+    worn: Floats
     partners: tuple[tuple[str, int] | None, ...] = ()
     notches: Floats = field(default_factory=lambda: np.empty((0, 2, 2)))
 
@@ -82,6 +85,7 @@ def piece_shapes(pattern: Pattern, *, notches: bool) -> tuple[PieceShape, ...]:
                 ),
                 pattern.fits(flat),
                 (float(np.arctan2(x - axis[0], axis[1] - y)), float(z)),
+                flat.totals,
                 tuple(side.partner for side in flat.panel.sides),
                 _notch_marks(flat, marks),
             )

@@ -126,6 +126,7 @@ ALL_PIECES = "all"
 def with_cloth(plan: GarmentPattern, piece: str, cloth: Cloth) -> GarmentPattern:
     """Return a pattern with a ``piece``, named without its side, or ``ALL_PIECES``, of another cloth.
 
+    One of the user's own does not replace a cloth of the program that has the same name: its name gets "own".
     Raises PatternError for a piece that the block does not have.
     """
     names = [panel.name for panel in plan.block.panels]
@@ -134,6 +135,8 @@ def with_cloth(plan: GarmentPattern, piece: str, cloth: Cloth) -> GarmentPattern
             Message("There is no piece '{piece}'.", piece=piece),
             Message("Choose one of: {choices}.", choices=(ALL_PIECES, *map(PieceName, names))),
         )
+    if cloth not in built_in() and cloth.name.casefold() in {each.name for each in built_in()}:
+        cloth = replace(cloth, name=f"{cloth.name} own", title=f"{cloth.title} (own)")
     panels = tuple(
         replace(panel, cloth=cloth.name) if piece in (ALL_PIECES, panel.name) else panel
         for panel in plan.block.panels

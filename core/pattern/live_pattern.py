@@ -57,10 +57,10 @@ class LivePattern:
             former = None
         if former is not None and former.block == plan.block and not (final and self._partly_cut):
             return former
-        self._matched = None
-        self._partly_cut = former is not None and not final
+        whole = former is None or final
         if former is None or final:
             self._garment = cut_garment(drawing, plan.block, plan.bridged)
         else:
             self._garment = recut(former, drawing, plan.block)
+        self._partly_cut, self._matched = not whole, None
         return self._garment

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -93,6 +94,11 @@ def test_a_piece_that_does_not_fit_gets_fixes_suggested(mannequin: Path) -> None
         assert card.darts.chart.best.within < controller.result.pattern.strains["cup left"].within
         card.suggest.click()
         yield lambda: bool(controller.fixes._found)
+        controller.set_allowance(9.0)
+        assert not controller.fixes._found, "they are of the former plan"
+        yield current(window)
+        card.suggest.click()
+        yield lambda: bool(controller.fixes._found)
         best = controller.fixes._found[0]
         assert best.fits
         card.fix_chosen.emit(0)
@@ -100,6 +106,7 @@ def test_a_piece_that_does_not_fit_gets_fixes_suggested(mannequin: Path) -> None
         yield current(window)
         window.session.undo_stack.undo()
         assert window.session.design.pattern.block == find_block("one-part-cup")
+        assert window.session.design.pattern.allowance == 9.0
 
     run_undrawn([str(mannequin)], script)
 
@@ -188,9 +195,9 @@ def test_points_and_notches_are_added_to_a_seam_and_removed(mannequin: Path) -> 
             pattern.notches[pattern.flats[panel].panel.name, side]
             for panel, side in zip(seam.panels, seam.sides, strict=True)
         ]
-        assert shares[0] == pytest.approx((0.75,))
-        assert shares[1] == pytest.approx((0.25,))
-        assert card.notches.text() == "Notches: 1"
+        assert shares[0] == pytest.approx((0.3, 0.62, 0.75)), "beside those that it had"
+        assert shares[1] == pytest.approx((0.25, 0.38, 0.7))
+        assert card.notches.text() == "Notches: 3"
         controller.editing.set_notches(None)
         assert window.session.design.pattern.block == find_block("two-part-cup")
 
@@ -234,6 +241,49 @@ def test_a_seam_is_drawn_on_the_body_and_removed(mannequin: Path) -> None:
     run_main([str(mannequin)], script)
 
 
+def test_a_drag_ends_with_the_step_an_undo_and_the_scan(mannequin: Path) -> None:
+    def script(window: MainWindow) -> Script:
+        yield from chosen(window, "one-part-cup")
+        controller, editing = window.pattern_controller, window.pattern_controller.editing
+        controller.select_seam("neckline left")
+        for end in (
+            lambda: window.navigation.show_step("lines"),
+            lambda: controller.set_allowance(5.0),
+            window.session.undo_stack.undo,
+            window.progress_controller.cancel,
+        ):
+            controller.layer._held = 0
+            controller.layer.moved.emit(0, controller.editing.handles()[0] + [0.0, 0.0, 12.0])
+            assert editing.trial is not None
+            assert editing.carries
+            end()
+            assert editing.trial is None
+            assert not editing.carries
+            window.navigation.show_step("pattern")
+            yield current(window)
+        assert window.session.design.pattern.block == find_block("one-part-cup")
+        assert window.pattern.export.isEnabled()
+
+    run_undrawn([str(mannequin)], script)
+
+
+def test_pieces_of_a_shape_that_is_no_result_are_not_called_fit(mannequin: Path) -> None:
+    def script(window: MainWindow) -> Script:
+        yield from chosen(window, "one-part-cup")
+        controller = window.pattern_controller
+        window.session.edit(
+            lambda design: replace(design.with_line("mid-bust", 0.6), volume="conventional", gain=1.9), "far"
+        )
+        yield settled(window)
+        yield current(window)
+        assert "do not use this shape for production" in window.pattern.verdict.text()
+        controller.files.show()
+        yield lambda: controller.files.dialog.preview.count > 1
+        assert "do not use this shape for production" in controller.files.dialog.doubt.text()
+
+    run_undrawn([str(mannequin)], script)
+
+
 def test_escape_is_taken_where_a_seam_is_selected_alone(mannequin: Path) -> None:
     def script(window: MainWindow) -> Script:
         yield from chosen(window, "one-part-cup")
@@ -261,6 +311,8 @@ def test_a_cancelled_computation_does_not_keep_back_the_next(mannequin: Path) ->
         assert not controller.worker.at_work
         assert controller.result is None
         assert window.pattern.verdict.text() == "The computation of the pieces was cancelled."
+        window.pattern.compute.click()
+        yield current(window)
         controller.choose_block(find_block("one-part-cup"))
         yield current(window)
         assert controller.result.pattern.garment.block.name == "one-part-cup"

@@ -17,7 +17,7 @@ def box(name: str, width: float, height: float, bearing: float, z: float) -> Pie
     corners = np.array([[x, z], [x + width, z], [x + width, z + height], [x, z + height]])
     faces = np.array([[0, 1, 2], [0, 2, 3]])
     sides = tuple((f"side {k}", np.array([k, (k + 1) % 4]), True) for k in range(4))
-    return PieceShape(name, corners, faces, np.zeros(2), 0.1, sides, True, (bearing, z))
+    return PieceShape(name, corners, faces, np.zeros(2), 0.1, sides, True, (bearing, z), np.zeros((2, 2)))
 
 
 PIECES = (
@@ -70,6 +70,7 @@ def test_a_title_stands_within_its_piece() -> None:
         (("edge", ring, True),),
         True,
         (0, 0),
+        np.zeros((0, 2)),
     )
     assert 40.0 < np.hypot(*hook.label_place) < 60.0
 

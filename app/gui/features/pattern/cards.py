@@ -153,15 +153,19 @@ class PieceCard(_Card):
             return
         self.heading.setText(row.title)
         facts = tr("Strain {strain} % on 95 % of the area, limit {limit} %. {area} cm².")
+        worn = tr("Mean stretch when worn: {across} % across, {down} % down.")
+        across, down = row.stretch_percent
         self.facts.setText(
             facts.format(
                 strain=number(row.strain_percent, 1),
                 limit=number(row.limit_percent, 0),
                 area=number(row.area_cm2, 0),
             )
+            + " "
+            + worn.format(across=number(across, 1), down=number(down, 1))
         )
-        self.reason.setText(row.reason)
-        self.reason.setVisible(bool(row.reason))
+        self.reason.setText(row.reason or row.note)
+        self.reason.setVisible(bool(self.reason.text()))
         self.suggest.setVisible(not row.fits)
         self.turn.show_value(turn)
         self._fill_menu(cloths, cloth)

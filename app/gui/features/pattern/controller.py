@@ -21,6 +21,7 @@ from app.i18n.catalog import number, tr
 from app.i18n.lengths import length
 from app.presenters.messages import render
 from app.presenters.pattern import block_about, block_title, seam_title
+from app.presenters.status import display_state, is_result, state_title
 from core.document.block import Block, without_side
 from core.document.design import Design
 from core.document.garment_pattern import GarmentPattern
@@ -48,7 +49,6 @@ class PatternController(QObject):
 
     changed = Signal()
     selected = Signal()
-    carrying_changed = Signal()
 
     def __init__(self, context: AppContext, panel: PatternPanel, view: PiecesView) -> None:
         super().__init__(context.session)
@@ -79,6 +79,7 @@ class PatternController(QObject):
         self._context.view.compared.connect(self._draw_garment)
         panel.block_chosen.connect(lambda name: self.choose_block(find_block(name)))
         panel.removed.connect(self.remove)
+        panel.compute.clicked.connect(self._compute)
         panel.piece_chosen.connect(self.select_piece)
         panel.allowance_changed.connect(self.set_allowance)
         panel.bridged_changed.connect(self.set_bridged)
@@ -113,7 +114,7 @@ class PatternController(QObject):
 
     def _export(self) -> None:
         self._context.navigation.show_step(STEP)
-        if self.is_current():
+        if self.plan is not None:
             self.files.show()
 
     # -- what is decided
@@ -175,6 +176,7 @@ class PatternController(QObject):
         if self.result is not None and final and self._is_of(frame, plan):
             self._show()
             return
+        self.panel.compute.hide()
         self.worker.submit(PatternRequest(frame, plan, final))
         self._show_state()
 
@@ -198,6 +200,7 @@ class PatternController(QObject):
         self.view.setVisible(self.is_open)
         self._framed = ""
         if not self.is_open:
+            self.editing.let_go()
             self.layer.end()
             return
         self.layer.begin()
@@ -206,6 +209,7 @@ class PatternController(QObject):
 
     def _follow_design(self, design: Design) -> None:
         plan = design.pattern
+        self.editing.check(plan)
         self.panel.show_plan(plan, "" if plan is None else block_title(plan.block))
         self._failure = ""
         if plan is None:
@@ -217,6 +221,7 @@ class PatternController(QObject):
             self.follow(self._session.frame)
 
     def _forget(self) -> None:
+        self.editing.let_go()
         self.worker.cancel()
         self.result, self.piece, self.seam = None, "", ""
         self._show()
@@ -252,8 +257,14 @@ class PatternController(QObject):
 
     def _stop(self) -> None:
         """Show that the user has cancelled the computation."""
-        self._failure = "" if self.result else tr("The computation of the pieces was cancelled.")
+        self._failure = tr("The computation of the pieces was cancelled.")
+        self.panel.compute.show()
         self._show_state()
+
+    def _compute(self) -> None:
+        self._failure = ""
+        if self._session.frame is not None:
+            self.follow(self._session.frame)
 
     def _show(self) -> None:
         """Show the present result."""
@@ -264,8 +275,8 @@ class PatternController(QObject):
             self.layer.clear()
         else:
             rows = {row.name: row for row in result.pieces}
-            if self.piece not in rows:
-                self.piece = ""
+            if self.piece and self.piece not in rows:
+                self.select_piece("")
             titles = {name: row.title for name, row in rows.items()}
             values = {name: f"{number(row.strain_percent, 1)} %" for name, row in rows.items()}
             self.view.show_pieces(result.shapes, titles, values)
@@ -301,6 +312,9 @@ class PatternController(QObject):
     def _show_verdict(self, result: PatternResult, current: bool) -> None:
         if not current:
             self.panel.show_verdict(tr("Solver not converged: pieces may change"), "faint")
+            return
+        if doubt := self.doubt():
+            self.panel.show_verdict(doubt, "bad")
             return
         tight = sum(not row.fits for row in result.pieces)
         note = tr("{count} pieces. Seam lengths match within {length}.").format(
@@ -396,6 +410,14 @@ class PatternController(QObject):
         self.panel.seam_card.show_walked(walked.words)
 
     # -- files
+
+    def doubt(self) -> str:
+        """Return why the reshaped body is no shape to cut by, empty where it is one."""
+        frame = self._session.frame
+        if frame is None or is_result(frame):
+            return ""
+        words = tr("{state}: do not use this shape for production.")
+        return words.format(state=state_title(display_state(frame)))
 
     def stem(self) -> str:
         """Return the name that files of the pieces begin with."""

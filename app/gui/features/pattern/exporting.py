@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import datetime
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
@@ -11,11 +13,12 @@ from PySide6.QtCore import QObject
 from app.gui.file_export import print_pages, write_file
 from app.gui.session.jobs import Job
 from app.gui.widgets.file_dialogs import ask_file, ask_save
-from app.i18n.catalog import language, tr
-from app.presenters.messages import render
+from app.i18n.catalog import language, listed, tr
+from app.presenters.messages import line_title, render
 from app.report.pdf_file import write_pdf
 from core.errors import UserError
 from core.export.report_data import Heading
+from core.garment.assessment import assess
 from core.pattern.block_library import read_block, write_block
 from core.pattern.cloth_csv import read_cloth, write_template
 from core.progress import Progress
@@ -79,8 +82,7 @@ class PatternExport(QObject):
             return
         strips, paper = dialog.strips.isChecked(), dialog.paper
         dialog.show_pages(None, tr("Preparing preview…"))
-        fits = result.pattern.fits_cloths
-        dialog.show_doubt("" if fits else tr("Some pieces exceed the limit of their cloth. Do not cut them."))
+        dialog.show_doubt("")
 
         def work(progress: Progress) -> object:
             from app.presenters.pattern_files import cut_pattern, tiling_of  # noqa: PLC0415 (brings shapely)
@@ -99,6 +101,16 @@ class PatternExport(QObject):
         self._pages = pattern_sheets(tiling, self._heading(), language())
         if self.dialog is not None:
             self.dialog.show_pages(self._pages)
+            self.dialog.show_doubt("\n".join(filter(None, self._doubts(self._cut))))
+
+    def _doubts(self, cut: CutPattern) -> Iterator[str]:
+        """Yield what to mind before cutting."""
+        yield self._controller.doubt()
+        if not cut.pattern.fits_cloths:
+            yield tr("Some pieces exceed the limit of their cloth. Do not cut them.")
+        if cut.uncut:
+            names = listed(line_title(name, cut.stages.design) for name in cut.uncut)
+            yield tr("No strip for: {lines}. See the cut list for the reason.").format(lines=names)
 
     def _fail(self, error: Exception) -> None:
         if isinstance(error, UserError):
@@ -128,13 +140,16 @@ class PatternExport(QObject):
         path = ask_save(dialog, tr("Export pieces"), name, f"{title} (*{ending})", ending)
         if not path:
             return
-        heading = pages.heading
+        heading, result = pages.heading, self._controller.result
+        found = {}
+        if kind == "json" and result is not None:
+            found = {"assessment": assess(result.request.frame).as_data()}
 
         def write(target: Path) -> None:
             if kind == "pdf":
                 write_pdf(target, pages, heading.project)
             else:
-                write_pattern(target, kind, cut, heading, {})
+                write_pattern(target, kind, cut, heading, found)
 
         write_file(self._context.notifications, _ABOUT, path, write)
         dialog.accept()
@@ -160,10 +175,11 @@ class PatternExport(QObject):
         plan = self._controller.plan
         if plan is None:
             return
-        name = f"{plan.block.name}.json"
+        name = f"{self._controller.stem()}.json"
         path = ask_save(self._context.window, tr("Save block as…"), name, "JSON (*.json)", ".json")
         if path:
-            block = plan.block
+            stem = Path(path).stem
+            block = plan.block if stem == plan.block.name else replace(plan.block, name=stem, title=stem)
             write_file(self._context.notifications, _ABOUT, path, lambda to: write_block(to, block))
 
     def open_cloth(self) -> None:

@@ -115,8 +115,11 @@ class GarmentLayer(QObject):
         """Listen no longer, and draw nothing."""
         if self.hand.at_work:
             self.hand.end()
-        self._held = None
         self.clear()
+
+    def release(self) -> None:
+        """Let go of the point that is dragged."""
+        self._held = None
 
     def clear(self) -> None:
         """Draw nothing."""

@@ -97,6 +97,9 @@ class PatternPanel(QStackedWidget):
         for each in (self.verdict, self.note):
             each.setContentsMargins(6, 0, 6, 0)
             column.addWidget(each)
+        self.compute = button(tr("Compute pieces"))
+        self.compute.hide()
+        column.addWidget(self.compute, alignment=Qt.AlignmentFlag.AlignLeft)
         column.addWidget(self.list)
         column.addWidget(hairline())
         column.addLayout(self._make_settings())

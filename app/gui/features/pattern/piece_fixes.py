@@ -13,6 +13,7 @@ from app.i18n.catalog import tr
 from app.presenters.messages import render
 from app.presenters.pattern import piece_title
 from core.document.block import Block
+from core.document.garment_pattern import GarmentPattern
 from core.errors import UserError
 from core.progress import Progress
 
@@ -31,6 +32,7 @@ class PieceFixes(QObject):
         self._context, self._controller = context, controller
         self._job: Job | None = None
         self._piece = ""
+        self._plan: GarmentPattern | None = None
         self._found: tuple[PieceFix, ...] = ()
         card = controller.panel.piece_card
         self._card = card
@@ -40,6 +42,7 @@ class PieceFixes(QObject):
         card.dart_chosen.connect(self._show_dart)
         card.dart_requested.connect(self._add_dart)
         controller.selected.connect(self._follow)
+        context.session.design_changed.connect(lambda _: self._follow())
 
     def suggest(self) -> None:
         """Compute fixes for the selected piece."""
@@ -73,7 +76,7 @@ class PieceFixes(QObject):
 
     def _begin(self, words: str, work: Callable[[Progress], object], done: Callable[[object], None]) -> None:
         self._context.jobs.cancel(self._job)
-        self._piece = self._controller.piece
+        self._piece, self._plan = self._controller.piece, self._controller.plan
         self._card.show_fixes((), words)
         self._job = self._context.jobs.run(words, work, done, self._fail, waited=True)
 
@@ -100,7 +103,9 @@ class PieceFixes(QObject):
         chart, result = cast("DartChart", found), self._controller.result
         if result is None:
             return
-        cloth = next(p.cloth for p in result.pattern.garment.panels if p.name == chart.panel)
+        cloth = next((p.cloth for p in result.pattern.garment.panels if p.name == chart.panel), None)
+        if cloth is None:
+            return
         self._card.show_fixes(())
         self._card.show_chart(chart, result.pattern.cloths[cloth].limit)
         if chart.best is not None:
@@ -128,8 +133,9 @@ class PieceFixes(QObject):
         self._clear()
 
     def _follow(self) -> None:
-        """Clear the fixes of another piece."""
-        if self._controller.piece != self._piece:
+        """Clear the fixes of another piece or plan."""
+        other = self._controller.piece != self._piece or self._controller.plan is not self._plan
+        if self._piece and other:
             self._clear()
 
     def _clear(self) -> None:

@@ -77,6 +77,7 @@ class PiecesView(QWidget):
         self._moves = np.zeros((0, 2))
         self._names: tuple[str, ...] = ()
         self._cloth: QPixmap | None = None
+        self._cloth_centre = np.zeros(2)  # that it was painted about
         self._faint = False
         self._words = ""
         self.piece = self.seam = self.hovered = ""
@@ -205,13 +206,13 @@ class PiecesView(QWidget):
                     best, found = away, name
         return found
 
-    def strain_at(self, spot: QPointF) -> float | None:
-        """Return the strain of the cloth at a place of the widget [1], None off the pieces."""
+    def triangle_at(self, spot: QPointF) -> tuple[PieceShape, int] | None:
+        """Return the piece and its triangle at a place of the widget, None off the pieces."""
         name = self.piece_at(spot)
         for shape, move in zip(self._shapes, self._moves, strict=True):
             if shape.name == name:
                 middles = self._spots(shape.points[shape.faces].mean(axis=1) + move)
-                return float(shape.strain[np.hypot(*(middles - [spot.x(), spot.y()]).T).argmin()])
+                return shape, int(np.hypot(*(middles - [spot.x(), spot.y()]).T).argmin())
         return None
 
     # -- the hand
@@ -231,7 +232,7 @@ class PiecesView(QWidget):
         if self._dragged or step.manhattanLength() > 4.0:
             self._dragged, self._by_hand, self._pressed = True, True, event.position()
             self._centre = self._centre - np.array([step.x(), -step.y()]) / self._scale
-            self._redraw()
+            self.update()  # the cloth is moved as a picture meanwhile
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         if self._pressed is not None and not self._dragged:
@@ -240,6 +241,8 @@ class PiecesView(QWidget):
                 self.seam_chosen.emit(seam)
             else:
                 self.piece_chosen.emit(self.piece_at(event.position()))
+        elif self._pressed is not None:
+            self._redraw()
         self._pressed = None
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
@@ -276,13 +279,17 @@ class PiecesView(QWidget):
 
     def tip_at(self, place: QPoint) -> str:
         """Return how far the cloth is stretched at a place of the widget, or nothing off the pieces."""
-        spot = QPointF(place)
-        strain, name = self.strain_at(spot), self.piece_at(spot)
-        if strain is None:
+        found = self.triangle_at(QPointF(place))
+        if found is None:
             return ""
+        shape, at = found
+        strain, (across, down) = float(shape.strain[at]), shape.worn[at].tolist()
         way = tr("stretched by {percent} %") if strain >= 0.0 else tr("compressed by {percent} %")
         words = way.format(percent=number(abs(100.0 * strain), 1))
-        return f"{self._titles.get(name, name)}: {words}"
+        worn = tr("worn with ease: {across} % across, {down} % down").format(
+            across=number(100.0 * across, 1), down=number(100.0 * down, 1)
+        )
+        return f"{self._titles.get(shape.name, shape.name)}: {words}\n{worn}"
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
@@ -311,8 +318,9 @@ class PiecesView(QWidget):
             return
         painter.setOpacity(_FAINT if self._faint else 1.0)
         if self._cloth is None:
-            self._cloth = self._paint_cloth()
-        painter.drawPixmap(0, 0, self._cloth)
+            self._cloth, self._cloth_centre = self._paint_cloth(), self._centre
+        x, y = self._scale * (self._cloth_centre - self._centre)
+        painter.drawPixmap(QPointF(x, -y), self._cloth)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         for shape, move in zip(self._shapes, self._moves, strict=True):
             self._paint_sides(painter, shape, move)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, Signal
 
 from app.i18n.catalog import number, tr
 from app.i18n.lengths import length, length_number, length_unit
@@ -21,7 +21,7 @@ from core.geometry.mesh import Points
 from core.geometry.plane_sections import arc_length, interpolate
 from core.messages import ClothName
 from core.pattern.block_library import built_in_blocks
-from core.pattern.cloth_library import find_cloth, with_cloth
+from core.pattern.cloth_library import built_in, with_cloth
 
 if TYPE_CHECKING:
     from app.gui.context import AppContext
@@ -39,13 +39,19 @@ class Walked:
 
 
 class SeamEditing(QObject):
-    """Edits of seams and pieces of the plan; ``trial`` is the plan while a point is dragged."""
+    """Edits of seams and pieces of the plan; ``trial`` is the plan while a point is dragged.
+
+    ``carrying_changed`` is emitted when a drag begins and ends.
+    """
+
+    carrying_changed = Signal()
 
     def __init__(self, context: AppContext, controller: PatternController) -> None:
         super().__init__(controller)
         self._session, self._controller = context.session, controller
         self._notifications = context.notifications
         self.trial: GarmentPattern | None = None
+        self._plan: GarmentPattern | None = None  # that the drag began with
         layer, panel = controller.layer, controller.panel
         layer.moved.connect(self._move)
         layer.dropped.connect(self._drop)
@@ -71,10 +77,16 @@ class SeamEditing(QObject):
         return self._controller.layer.carries
 
     def let_go(self) -> bool:
-        """Move the seam back to where a hand took hold of it; returns whether one had."""
+        """Cancel a drag and move the seam back; returns whether there was one."""
         had = self.trial is not None
+        self._controller.layer.release()
         self._cancel()
         return had
+
+    def check(self, plan: GarmentPattern | None) -> None:
+        """Cancel a drag that began with another plan than that of the design."""
+        if self.trial is not None and plan is not self._plan:
+            self.let_go()
 
     # -- a point of the selected seam
 
@@ -100,7 +112,8 @@ class SeamEditing(QObject):
         from core.pattern.seam_moves import moved_block  # noqa: PLC0415 (takes 0.1 s to load)
 
         if self.trial is None:
-            controller.carrying_changed.emit()
+            self._plan = plan
+            self.carrying_changed.emit()
         try:
             block = moved_block(controller.result.drawing, plan.block, controller.seam, number_, place)
             self.trial = replace(plan, block=block)
@@ -112,15 +125,17 @@ class SeamEditing(QObject):
 
     def _drop(self) -> None:
         trial, self.trial = self.trial, None
-        self._controller.carrying_changed.emit()
+        self.carrying_changed.emit()
         if trial is not None:
             seam = trial.block.seam(self._controller.seam)
             title = seam_title(self._controller.seam if seam.right else seam.name)
             self._controller.change(tr("{seam} moved").format(seam=title), block=trial.block)
 
     def _cancel(self) -> None:
+        if self.trial is None:
+            return
         self.trial = None
-        self._controller.carrying_changed.emit()
+        self.carrying_changed.emit()
         if self._session.frame is not None:
             self._controller.follow(self._session.frame)
 
@@ -208,9 +223,11 @@ class SeamEditing(QObject):
             seam, result = garment.block.seam(name), self._controller.result
             assert result is not None
             sewn = next(each for each in result.pattern.matched.seams if each.name == name)
-            kept = round(result.pattern.notch_share(sewn, min(max(share, 0.01), 0.99)), 3)
-            notches = tuple(sorted({*(seam.notches or ()), kept}))
-            return garment.block.with_seam(replace(seam, notches=notches))
+            pattern = result.pattern
+            side = pattern.flats[sewn.panels[0]].panel.name, sewn.sides[0]
+            shares = (min(max(share, 0.01), 0.99), *pattern.notches[side])
+            notches = {round(pattern.notch_share(sewn, each), 3) for each in shares}
+            return garment.block.with_seam(replace(seam, notches=tuple(sorted(notches))))
 
         self._change_block(tr("Notch added: {seam}"), changed)
 
@@ -241,7 +258,7 @@ class SeamEditing(QObject):
         """Cut the selected piece, and that of the other side, from a cloth that is known by its name."""
         plan = self._controller.plan
         if plan is not None:
-            self.use_cloth(find_cloth(name, plan.cloths))
+            self.use_cloth({each.name: each for each in (*built_in(), *plan.cloths)}[name])
 
     def use_cloth(self, cloth: Cloth) -> None:
         """Cut the selected piece, and that of the other side, from a cloth."""
