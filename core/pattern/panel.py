@@ -10,11 +10,10 @@ import numpy as np
 from scipy import sparse
 
 from core.errors import PatternError
-from core.geometry.closest_point import barycentric, nearest_faces
-from core.geometry.mesh import Faces, Floats, Indices, Mesh, Points, area_vectors, half_edges, unit
+from core.geometry.mesh import Faces, Floats, Indices, Points, area_vectors, half_edges, unit
 from core.geometry.plane_sections import arc_length
 from core.messages import Message
-from core.pattern.even_points import cut_open, grid_within, joined_by_triangles
+from core.pattern.even_points import cut_open, grid_within, joined_by_triangles, located
 from core.pattern.panel_border import BorderPiece, SeamNet, SkinRegion, seam_net, skin_regions
 from core.pattern.plane_maps import PlaneBand, conformal_map, rigid_map, triangle_slopes
 from core.pattern.surface_cut import CutSkin
@@ -270,10 +269,9 @@ def _even_panel(
             Message('The panel "{name}" is too strongly curved to be laid flat.', name=seed.name),
             Message("Divide it by a seam."),
         )
-    flat = Mesh(np.pad(chart, [(0, 0), (0, 1)]), region.faces)
-    at, foot = nearest_faces(flat, np.pad(inner, [(0, 0), (0, 1)]))
+    at, inner_shares = located(chart, region.faces, inner)
     vertices = np.concatenate([outline.vertices, region.faces[at]])
-    shares = np.concatenate([outline.shares, barycentric(flat.vertices[region.faces[at]], foot)])
+    shares = np.concatenate([outline.shares, inner_shares])
     faces, former = cut_open(faces, outline.lines)
     rows = np.repeat(np.arange(len(former)), 3)
     columns = region.source[vertices[former]].ravel()
@@ -340,7 +338,7 @@ def _grain(places: Points, faces: Faces, flat: Floats, up: Points, turn: float) 
 
 def _chart(places: Points, faces: Faces, up: Points, turn: float) -> Floats:
     """Return the skin of a panel roughly laid flat, its grain line upward, (v, 2) [mm]."""
-    slopes = triangle_slopes(places, faces)
-    chart = rigid_map(faces, slopes, conformal_map(places, faces, slopes))
+    slopes, band = triangle_slopes(places, faces), PlaneBand.of(faces, len(places), 1)
+    chart = rigid_map(faces, slopes, conformal_map(places, faces, slopes, band), band)
     x, y = _grain(places, faces, chart, up, turn) @ chart
     return np.asarray(chart @ np.array([[y, x], [-x, y]]) / np.hypot(x, y))
