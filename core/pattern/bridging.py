@@ -10,12 +10,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import SuperLU, splu
 
-from core.geometry.mesh import Faces, Flags, Floats, Indices, Points, area_vectors, boundary_loops, unit
+from core.geometry.mesh import (
+    Faces,
+    Flags,
+    Floats,
+    Indices,
+    Points,
+    area_vectors,
+    boundary_loops,
+    own_vertices,
+    unit,
+)
 from core.pattern.surface_cut import CutSkin
 
 TENSION = (10.0, 1.0)
@@ -54,10 +65,9 @@ def bridged_cut(cut: CutSkin, faces: Faces, wires: Sequence[int] = (), bands: Se
     It stays on the skin along the curves with the numbers ``wires``; those of ``bands`` are elastic and span
     only what is hollow along themselves.
     """
-    is_used = np.zeros(len(cut.vertices), dtype=bool)
-    is_used[faces] = True
-    used, own = np.flatnonzero(is_used), (np.cumsum(is_used) - 1)[faces]
-    may = np.ones(len(is_used), dtype=bool)
+    used, own = own_vertices(faces, len(cut.vertices))
+    is_used, may = np.zeros(len(cut.vertices), dtype=bool), np.ones(len(cut.vertices), dtype=bool)
+    is_used[used] = True
     for curve in wires:
         may[cut.chains[curve]] = False
     places, loops = cut.vertices[used], boundary_loops(own)
@@ -116,12 +126,25 @@ def _spread(
     known = sparse.csr_array(entries, shape=weights.shape)
     if not inner.any():
         return known
-    pull = sparse.csr_array(weights[inner][:, ~inner] @ known[~inner])
-    used = np.unique(pull.indices)
-    shares = -_factor(weights[inner][:, inner]).solve(pull[:, used].toarray())
-    rows = np.repeat(np.flatnonzero(inner), len(used))
-    spread = sparse.coo_array((shares.ravel(), (rows, np.tile(used, int(inner.sum())))), weights.shape)
-    return sparse.csr_array(known + spread)
+    return sparse.csr_array(known + _resting(weights, known, inner))
+
+
+def _resting(weights: sparse.csr_array, known: sparse.csr_array, inner: Flags) -> sparse.coo_array:
+    """Return the places that are ``inner`` (n,) as shares of the others, hollow by hollow, (n, n)."""
+    rows = np.flatnonzero(inner)
+    count, label = sparse.csgraph.connected_components(weights[rows][:, rows], directed=False)
+    order = rows[np.argsort(label, kind="stable")]
+    stiff = sparse.csr_array(weights[order][:, order])
+    pull = sparse.csr_array(weights[order][:, ~inner] @ known[~inner])
+    ends = np.append(0, np.cumsum(np.bincount(label, minlength=count)))
+    found = []
+    for begin, end in pairwise(ends.tolist()):
+        own = pull[begin:end]
+        used = np.unique(own.indices)
+        shares = -_factor(stiff[begin:end, begin:end]).solve(own[:, used].toarray())
+        found.append((shares.ravel(), np.repeat(order[begin:end], len(used)), np.tile(used, end - begin)))
+    value, row, column = (np.concatenate(each) for each in zip(*found, strict=True))
+    return sparse.coo_array((value, (row, column)), weights.shape)
 
 
 def _edge_shares(

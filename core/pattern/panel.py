@@ -10,7 +10,7 @@ import numpy as np
 from scipy import sparse
 
 from core.errors import PatternError
-from core.geometry.mesh import Faces, Floats, Indices, Points, area_vectors, half_edges, unit
+from core.geometry.mesh import Faces, Floats, Indices, Points, area_vectors, face_neighbours, half_edges, unit
 from core.geometry.plane_sections import arc_length
 from core.messages import Message
 from core.pattern.even_points import cut_open, grid_within, joined_by_triangles, located
@@ -272,7 +272,9 @@ def _even_panel(
     at, inner_shares = located(chart, region.faces, inner)
     vertices = np.concatenate([outline.vertices, region.faces[at]])
     shares = np.concatenate([outline.shares, inner_shares])
-    faces, former = cut_open(faces, outline.lines)
+    former = np.arange(len(points))
+    if len(outline.lines):
+        faces, former = cut_open(faces, outline.lines)
     rows = np.repeat(np.arange(len(former)), 3)
     columns = region.source[vertices[former]].ravel()
     entries = (shares[former].ravel(), (rows, columns))
@@ -293,9 +295,7 @@ def _sides(
         for path, (_, points) in enumerate(outline.paths)
         for at, step in enumerate(zip(points[:-1].tolist(), points[1:].tolist(), strict=True))
     }
-    sides = half_edges(faces)
-    keys, back = (each[:, 0] << 31 | each[:, 1] for each in (sides, sides[:, ::-1]))
-    border = sides[~np.isin(keys, back)]
+    border = half_edges(faces)[face_neighbours(faces).T.ravel() < 0]
     found: dict[int, list[tuple[int, int, int]]] = {}
     for (start, end), step in zip(border.tolist(), former[border].tolist(), strict=True):
         path, at = steps[step[0], step[1]]
