@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
+from typing import Literal
 
 import numpy as np
 from scipy import sparse
@@ -183,21 +184,22 @@ def _edge_shares(
                 yield place, np.array([one, two, third]), np.array([1.0 - b - c, b, c])
 
 
-def _tension(normals: Points) -> Floats:
-    """Return the tension of cloth at places with these ``normals`` (n, 3), (n, 3, 3) [1].
+def _tension(normals: Points) -> tuple[Points, Floats, Floats]:
+    """Return the way across the body at places with these ``normals`` (n, 3), (n, 3), and tensions (n,) [1].
 
-    The greater one runs round the body; under the crotch, where the skin lies level, it runs all ways.
+    The first one is in all directions of the cloth, the second one more across. Under the crotch, where the
+    skin lies level, the greater tension runs all ways.
     """
     across = unit(np.cross([0.0, 0.0, 1.0], normals) + 1e-12)
-    level = (normals[:, 2] ** 4)[:, None, None]
-    within = np.eye(3) - normals[:, :, None] * normals[:, None]
-    most = (1.0 - level) * across[:, :, None] * across[:, None] + level * within
-    return np.asarray(TENSION[1] * np.eye(3) + (TENSION[0] - TENSION[1]) * most)
+    more = (TENSION[0] - TENSION[1]) * normals[:, 2] ** 4
+    return across, TENSION[1] + more, TENSION[0] - TENSION[1] - more
 
 
-def _factor(matrix: sparse.csr_array) -> SuperLU:
-    """Return the factors of a symmetric ``matrix``."""
-    return splu(matrix.T, "MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+def _factor(
+    matrix: sparse.csr_array, order: Literal["MMD_AT_PLUS_A", "NATURAL"] = "MMD_AT_PLUS_A"
+) -> SuperLU:
+    """Return the factors of a symmetric ``matrix``, in its own order where that is good already."""
+    return splu(matrix.T, order, diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
 
 def _taut(
@@ -209,24 +211,25 @@ def _taut(
     may: Flags,
 ) -> tuple[Floats, Points]:
     """Return how far a taut cloth is off the skin, (n,) [mm], and in which directions, (n, 3)."""
-    ways = _smoothed(weights, places, faces, normals)
+    ways, order = _smoothed(weights, places, faces, normals)
     stiff = _along(weights, ways)
     force = np.einsum("nx,nx->n", ways, _without_edges(weights @ places, places, loops, normals))
-    return _lifted(stiff, force, may), ways
+    return _lifted(stiff, force, may, order), ways
 
 
-def _lifted(stiff: sparse.csr_array, force: Floats, may: Flags) -> Floats:
+def _lifted(stiff: sparse.csr_array, force: Floats, may: Flags, order: Indices) -> Floats:
     """Return the least distances u >= 0 of u.A.u / 2 + b.u, 0 where it ``may`` not leave the skin.
 
     By the primal-dual active set method (M. Hintermüller, K. Ito, K. Kunisch, SIAM J. Optim. 13, 2002). In
-    the first rounds the places off the skin grow by one more row: what is too much goes in the next.
+    the first rounds the places off the skin grow by one more row: what is too much goes in the next. In
+    the ``order`` (n,) of places factors are small.
     """
     lifted, off = np.zeros(len(force)), may & (force < 0.0)
     for number in range(_ROUNDS):
         lifted[:] = 0.0
-        free = np.flatnonzero(off)
+        free = order[off[order]]
         if len(free):
-            lifted[free] = _factor(stiff[free][:, free]).solve(-force[free])
+            lifted[free] = _factor(stiff[free][:, free], "NATURAL").solve(-force[free])
         contact = stiff @ lifted + force
         before, off = off, may & np.where(off, lifted > 0.0, contact < 0.0)
         if (before == off).all():
@@ -247,7 +250,11 @@ def _stiffness(places: Points, faces: Faces, lines: Sequence[tuple[Indices, floa
     normal /= double[:, None]
     slopes = np.cross(normal[:, None], np.roll(corners, -2, axis=1) - np.roll(corners, -1, axis=1))
     slopes /= double[:, None, None]
-    values = 0.5 * double[:, None, None] * (slopes @ _tension(normal) @ slopes.transpose(0, 2, 1))
+    across, within, most = _tension(normal)
+    along = np.einsum("mkx,mx->mk", slopes, across)
+    values = most[:, None, None] * along[:, :, None] * along[:, None]
+    values += within[:, None, None] * (slopes @ slopes.transpose(0, 2, 1))
+    values *= 0.5 * double[:, None, None]
     rows, columns, entries = [np.repeat(faces, 3, axis=1)], [np.tile(faces, 3)], [values]
     for line, tension in lines:
         first, second = line.T
@@ -284,9 +291,15 @@ def _along(weights: sparse.csr_array, ways: Points) -> sparse.csr_array:
     return sparse.csr_array((turned, (row, column)), shape=weights.shape)
 
 
-def _smoothed(weights: sparse.csr_array, places: Points, faces: Faces, normals: Points) -> Points:
-    """Return directions that change slowly from place to place, so that they lead out of a cleft, (n, 3)."""
+def _smoothed(
+    weights: sparse.csr_array, places: Points, faces: Faces, normals: Points
+) -> tuple[Points, Indices]:
+    """Return directions that change slowly from place to place, so that they lead out of a cleft, (n, 3).
+
+    Returns also an order of the places, (n,), in which factors are small.
+    """
     corner = np.repeat(np.linalg.norm(area_vectors(places, faces), axis=1) / 3.0, 3)
     share = np.bincount(faces.ravel(), corner, len(places)) + 1e-6
     spread = sparse.diags_array(share) + _SMOOTHED**2 / TENSION[0] * weights
-    return unit(_factor(sparse.csr_array(spread)).solve(share[:, None] * normals))
+    factor = _factor(sparse.csr_array(spread))
+    return unit(factor.solve(share[:, None] * normals)), np.argsort(factor.perm_c)

@@ -320,13 +320,13 @@ def _grain(places: Points, faces: Faces, flat: Floats, up: Points, turn: float) 
     """
     vectors = area_vectors(places, faces)
     normal = unit(vectors)
-    along = up - (normal @ up)[:, None] * normal
+    along, aside = up - (normal @ up)[:, None] * normal, np.cross(normal, up)
     angle = np.radians(turn)
-    along = np.cos(angle) * along + np.sin(angle) * np.cross(normal, along)
+    aside = np.cos(angle) * aside - np.sin(angle) * along  # of the turned grain line
     corners = places[faces]
-    opposite = np.roll(corners, -2, axis=1) - np.roll(corners, -1, axis=1)
-    slopes = np.cross(normal[:, None], opposite)  # twice the area times the slopes of the hat functions
-    pull = np.bincount(faces.ravel(), 0.5 * np.einsum("mkc,mc->mk", slopes, along).ravel(), len(places))
+    opposite = np.roll(corners, -1, axis=1) - np.roll(corners, -2, axis=1)
+    # Twice the area times the slope of a hat function is the side opposite it, turned by 90 degrees.
+    pull = np.bincount(faces.ravel(), 0.5 * np.einsum("mkc,mc->mk", opposite, aside).ravel(), len(places))
     total = pull @ flat
     if np.hypot(*total) > _LEVEL * np.linalg.norm(vectors, axis=1).sum():
         return np.asarray(pull, dtype=np.float64)

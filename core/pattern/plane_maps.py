@@ -68,10 +68,10 @@ class PlaneBand:
     def of(cls, faces: Faces, count: int, axes: int) -> PlaneBand:
         """Order ``count`` points (Cuthill and McKee), so that corners of ``faces`` lie near each other."""
         sides = half_edges(faces)
-        graph = sparse.coo_array((np.ones(len(sides)), sides.T), (count, count))
+        both = np.concatenate([sides, sides[:, ::-1]]).T
+        graph = sparse.csr_array((np.ones(2 * len(sides)), both), (count, count))
         place = np.empty(count, dtype=np.int64)
-        symmetric = sparse.csr_array(graph + graph.T)
-        place[reverse_cuthill_mckee(symmetric, symmetric_mode=True)] = np.arange(count)
+        place[reverse_cuthill_mckee(graph, symmetric_mode=True)] = np.arange(count)
         reach = axes * int(np.abs(place[sides[:, 0]] - place[sides[:, 1]]).max()) + axes - 1
         whole = axes * place[:, None] + np.arange(axes)
         corners = whole[faces].reshape(len(faces), 3 * axes)
