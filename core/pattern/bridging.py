@@ -114,17 +114,11 @@ def _spread(
     on_edge = np.zeros(len(places), dtype=bool)
     on_edge[np.concatenate(loops)] = True
     off = off.copy()
-    told = list(_edge_shares(loops, lifted, off, ~off & ~on_edge))
-    inner = off & ~on_edge
-    rows = np.repeat([row for row, _, _ in told], 3).astype(np.int64)
-    columns = np.array([column for _, own, _ in told for column in own], dtype=np.int64)
-    values = np.array([share for _, _, own in told for share in own])
-    resting = np.flatnonzero(~off)
-    entries = (
-        np.append(values, np.ones(len(resting))),
-        (np.append(rows, resting), np.append(columns, resting)),
-    )
-    known = sparse.csr_array(entries, shape=weights.shape)
+    edges = list(_edge_shares(loops, lifted, off, ~off & ~on_edge))
+    inner, resting = off & ~on_edge, np.flatnonzero(~off)
+    told = [(resting, resting, np.ones(len(resting))), *edges]
+    rows, columns, values = (np.concatenate(each) for each in zip(*told, strict=True))
+    known = sparse.csr_array((values, (rows, columns)), shape=weights.shape)
     if not inner.any():
         return known
     return sparse.csr_array(known + _resting(weights, known, inner))
@@ -150,10 +144,10 @@ def _resting(weights: sparse.csr_array, known: sparse.csr_array, inner: Flags) -
 
 def _edge_shares(
     loops: Sequence[Indices], lifted: Points, off: Flags, inside: Flags
-) -> Iterator[tuple[int, Indices, Floats]]:
-    """Yield each place of an edge that is off the skin, three places on the skin, and its shares of them.
+) -> Iterator[tuple[Indices, Indices, Floats]]:
+    """Yield places of an edge that are off the skin, each thrice, those on the skin, and the shares of them.
 
-    They are where the edge leaves the skin, where it comes back, and one ``inside`` the cloth (n,). A place
+    These are where the edge leaves the skin, where it comes back, and one ``inside`` the cloth (n,). A place
     that is not in their plane is put on the skin, and no longer ``off``.
     """
     within = np.flatnonzero(inside)
@@ -180,8 +174,12 @@ def _edge_shares(
                 off[loop[middle % len(loop)]] = False
                 runs += [(first, middle), (middle, last)]
                 continue
-            for place, (b, c) in zip(free.tolist(), shares.T, strict=True):
-                yield place, np.array([one, two, third]), np.array([1.0 - b - c, b, c])
+            b, c = shares
+            yield (
+                np.tile(free, 3),
+                np.repeat([one, two, third], len(free)),
+                np.concatenate([1.0 - b - c, b, c]),
+            )
 
 
 def _tension(normals: Points) -> tuple[Points, Floats, Floats]:

@@ -10,8 +10,8 @@ import numpy as np
 from scipy import sparse
 
 from core.errors import PatternError
-from core.geometry.closest_point import nearest_faces
-from core.geometry.mesh import Faces, Flags, Indices, Mesh, Points, area_vectors, half_edges, own_vertices
+from core.geometry.closest_point import nearest_faces, nearest_on
+from core.geometry.mesh import Faces, Flags, Indices, Points, area_vectors, half_edges, own_vertices
 from core.messages import Message
 from core.pattern.even_points import cut_open
 from core.pattern.surface_cut import CutSkin
@@ -158,7 +158,8 @@ def _faces_at(cut: CutSkin, places: Points) -> Indices:
     found = []
     for origin, foot in zip(face.tolist(), place, strict=True):
         rows = np.flatnonzero(cut.origin == origin)
-        found.append(rows[nearest_faces(Mesh(cut.vertices, cut.faces[rows]), foot[None])[0][0]])
+        on_each = nearest_on(cut.vertices[cut.faces[rows]], np.repeat(foot[None], len(rows), axis=0))
+        found.append(rows[np.linalg.norm(on_each - foot, axis=1).argmin()])
     return np.array(found, dtype=np.int64)
 
 
