@@ -33,6 +33,7 @@ LIBRARIES = {
     "app.gui.session": QT | {"numpy", "platformdirs"},
     "app.gui.viewport": QT | SCENE | {"pyvistaqt", "PySide6.QtOpenGLWidgets", "PySide6.QtPrintSupport"},
     "app.gui.features": QT | {"PySide6", "numpy", "platformdirs", "PySide6.QtPrintSupport", "PySide6.QtSvg"},
+    "app.gui.drawing_base": QT | {"numpy"},
     "app.gui": QT
     | {"PySide6", "PySide6.QtPrintSupport", "platformdirs", "threadpoolctl", "pyvista", "pyvistaqt"},
     "app.cli": QT | SCENE | {"PySide6", "PIL", "ezdxf", "pyvistaqt", "platformdirs", "threadpoolctl"},
