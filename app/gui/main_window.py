@@ -251,16 +251,13 @@ class MainWindow(QMainWindow):
 
     def _collect_carriers(self) -> None:
         """Collect what drags something: meanwhile nothing is waited for."""
-        carriers = (
+        self.progress_controller.add_carriers(
             self.landmarks_controller,
             self.band_drag_controller,
             self.sections_controller,
             self.target_shape_controller.handles,
             self.pattern_controller.editing,
         )
-        self.progress_controller.carriers += carriers
-        for carrier in carriers:
-            carrier.carrying_changed.connect(self.progress_controller.show)
 
     def _make_help(self) -> None:
         """Make the help, with its buttons below the steps."""

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, ClassVar, Protocol
 
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, Signal
 
 from app.gui.status_bar import StatusBar
 from app.gui.widgets.notification_bar import NotificationBar
@@ -21,7 +21,9 @@ AGE = 0.3
 
 
 class Carrier(Protocol):
-    """A controller whose things are dragged over the body."""
+    """A controller whose things are dragged over the body; ``carrying_changed`` as drags begin and end."""
+
+    carrying_changed: ClassVar[Signal]
 
     @property
     def carries(self) -> bool:
@@ -50,6 +52,12 @@ class ProgressController(QObject):
         context.view.busy.cancelled.connect(self.cancel)
         context.actions.cancel.triggered.connect(self.cancel)
         status.job_cancelled.connect(self.cancel)
+
+    def add_carriers(self, *carriers: Carrier) -> None:
+        """Add what may carry something."""
+        self.carriers += carriers
+        for carrier in carriers:
+            carrier.carrying_changed.connect(self.show)
 
     def show_work(self, what: str, share: float) -> None:
         """Name what is read or built, and how much of it is done; an empty name ends it."""
