@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, ClassVar, Protocol
+from typing import TYPE_CHECKING, Protocol
 
-from PySide6.QtCore import QObject, Signal
+from PySide6.QtCore import QObject, SignalInstance
 
 from app.gui.status_bar import StatusBar
 from app.gui.widgets.notification_bar import NotificationBar
@@ -23,7 +23,10 @@ AGE = 0.3
 class Carrier(Protocol):
     """A controller whose things are dragged over the body; ``carrying_changed`` as drags begin and end."""
 
-    carrying_changed: ClassVar[Signal]
+    @property
+    def carrying_changed(self) -> SignalInstance:
+        """Return the signal of its drags."""
+        ...
 
     @property
     def carries(self) -> bool:
