@@ -127,7 +127,11 @@ def write_pattern(path: Path, kind: str, cut: CutPattern, heading: Heading, foun
     Raises UserError where it cannot be written.
     """
     if kind == "json":
-        values = {**pattern_values(cut.pattern, cut.elastics), **found, "versions": {"busk": __version__}}
+        values = {
+            **pattern_values(cut.pattern, cut.pieces, cut.elastics),
+            **found,
+            "versions": {"busk": __version__},
+        }
         write_text(path, json.dumps(values, indent=1, ensure_ascii=False) + "\n")
     elif kind in ("obj", "glb"):
         skin = cut.stages.body.smoothed

@@ -12,14 +12,16 @@ from core.document.block import RING, ROOT, Block, Seam, without_side
 from core.document.cloth import Cloth, Pair
 from core.document.garment_pattern import ALLOWANCE, GarmentPattern
 from core.geometry.mesh import Points
+from core.geometry.plane_sections import arc_length
 from core.landmarks.types import SIDES
 from core.messages import ClothName, Length, Message, PieceName, SeamName
 from core.pattern.bridging import bridged_cut
 from core.pattern.cloth_library import cloths_of
 from core.pattern.flattening import FlatPanel, StrainSummary, strain_summary
+from core.pattern.mirroring import SAME, MirrorPair, merge_mirrored, mirror_pairs
 from core.pattern.notches import notched, seam_share
 from core.pattern.panel import Bridge, Panel, PanelSeed, cut_panels
-from core.pattern.piece import NO_ELASTICS, EdgeElastic, Piece, Side, SideKey, merge_mirrored
+from core.pattern.piece import NO_ELASTICS, EdgeElastic, Piece, Side, SideKey
 from core.pattern.places import BodyPlaces
 from core.pattern.seam_curves import SeamCurve, SeamDrawing
 from core.pattern.seam_matching import Matched, SeamFit, match, seams_of
@@ -53,13 +55,34 @@ class CutGarment:
     def flat(self, vertices: Points, cloths: Mapping[str, Cloth], former: Matched | None = None) -> Pattern:
         """Return the pattern on a skin with these ``vertices`` (n, 3) [mm], from ``cloths`` by their names.
 
-        ``former`` is the match of a pattern before, from which it starts.
+        Left and right panels that are mirror images get sides of the same lengths, so that they can be one
+        piece. ``former`` is the match of a pattern before, from which it starts and of which it takes these.
         """
-        places = [panel.places(vertices) for panel in self.panels]
+        places = tuple(panel.places(vertices) for panel in self.panels)
         own = [cloths[panel.cloth] for panel in self.panels]
-        return Pattern(
-            self, match(self.panels, places, own, seams_of(self.panels), former), tuple(places), cloths
+        seams = seams_of(self.panels)
+
+        def laid(former: Matched | None, mirrors: Sequence[MirrorPair]) -> Pattern:
+            return Pattern(self, match(self.panels, places, own, seams, former, mirrors), places, cloths)
+
+        known = () if former is None else former.mirrors
+        pattern = laid(former, tuple(pair for pair in known if self._is_even(pair, places)))
+        if former is None and pattern.mirrors:
+            pattern = laid(pattern.matched, pattern.mirrors)
+        # Pieces that are not the same after all keep their own lengths.
+        while (same := pattern.kept_mirrors) != pattern.matched.mirrors:
+            pattern = laid(pattern.matched, same)
+        return pattern
+
+    def _is_even(self, pair: MirrorPair, places: Sequence[Points]) -> bool:
+        """Return whether sides of mirrored panels, whose points are at ``places``, may be equally long."""
+        number = {panel.name: at for at, panel in enumerate(self.panels)}
+        left, right = number[pair.left], number[pair.right]
+        lengths = (
+            [arc_length(places[at][self.panels[at].sides[side].points])[-1] for at, side in both]
+            for both in (((left, k), (right, other)) for k, other in enumerate(pair.sides))
         )
+        return all(abs(one - two) < SAME for one, two in lengths)
 
     def seam_of(self, name: str) -> Seam | None:
         """Return the seam of the block of this name, with or without its side; None if there is none."""
@@ -238,6 +261,16 @@ class Pattern:
         """
         sewn = [self._piece(flat, allowance, elastics) for flat in self.flats]
         return merge_mirrored(notched(sewn, self._own_notches))
+
+    @cached_property
+    def mirrors(self) -> tuple[MirrorPair, ...]:
+        """Return the panels of which left and right are the same."""
+        return mirror_pairs([self._piece(flat, 0.0, NO_ELASTICS) for flat in self.flats])
+
+    @property
+    def kept_mirrors(self) -> tuple[MirrorPair, ...]:
+        """Return those panels that were matched with sides of the same lengths and are the same."""
+        return tuple(pair for pair in self.matched.mirrors if pair in self.mirrors)
 
     @cached_property
     def _own_notches(self) -> Mapping[str, tuple[float, ...]]:

@@ -21,7 +21,7 @@ from core.export.pattern_svg import write_pattern_svg
 from core.export.report_data import Heading
 from core.pattern.allowance import cut_piece
 from core.pattern.layout import MARGIN, Layout, lay_out
-from core.pattern.piece import merge_mirrored
+from core.pattern.mirroring import merge_mirrored
 
 HEADING = Heading("Étude 斜め", "2026-11-26", "Customer 0412")
 SVG = "{http://www.w3.org/2000/svg}"
