@@ -299,4 +299,6 @@ class Pattern:
             notches = elastic.marks if elastic else ()
             kind, points = without_side(own.name)[0], flat.points[own.points]
             sides.append(Side(kind, points, width, notches, own.partner, elastic))
-        return Piece(name, side, self.cloths[panel.cloth].title, 1, tuple(sides))
+        cloth = self.cloths[panel.cloth]
+        stretch = (0.0, 1.0) if cloth.stretches_down else (1.0, 0.0)
+        return Piece(name, side, cloth.title, 1, tuple(sides), stretch=stretch)

@@ -96,6 +96,7 @@ class Piece:
     ``side`` is "left", "right", ``BOTH`` (cut mirrored) or "" (over the middle of the body). ``sides`` close
     the outline, counter-clockwise. ``internal`` are lines inside by kind (dart legs, control lines), each
     (k, 2) [mm]. ``grain`` and ``stretch`` are the unit directions of the grain line and greatest stretch.
+    ``title`` and ``cloth_title`` are written on it in place of its name and cloth, if there are any.
     """
 
     name: str
@@ -106,6 +107,8 @@ class Piece:
     internal: tuple[tuple[str, Points2], ...] = ()
     grain: tuple[float, float] = (0.0, 1.0)
     stretch: tuple[float, float] = (1.0, 0.0)
+    title: str = ""
+    cloth_title: str = ""
 
     def __post_init__(self) -> None:
         after = (*self.sides[1:], *self.sides[:1])
@@ -127,6 +130,21 @@ class Piece:
     def outline(self) -> Points2:
         """Return the sew line without its first point again, (n, 2) [mm]."""
         return np.concatenate([side.points[:-1] for side in self.sides])
+
+    @property
+    def darts(self) -> tuple[tuple[Points2, Floats], ...]:
+        """Return the legs of each dart, from the outline to its tip and back, (k, 2), and the tip, (2,) [mm].
+
+        A dart is a slit, whose two sides follow each other and are sewn to each other.
+        """
+        after = (*self.sides[1:], *self.sides[:1])
+        return tuple(
+            (np.concatenate([one.points, other.points[1:]]), one.points[-1])
+            for number, (one, other) in enumerate(zip(self.sides, after, strict=True))
+            if one is not other
+            and one.partner == (self.key, (number + 1) % len(self.sides))
+            and other.partner == (self.key, number)
+        )
 
     @property
     def area(self) -> float:
