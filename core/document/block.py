@@ -142,8 +142,8 @@ class Block:
             self._check_seam(seam)
         for panel in self.panels:
             self._check_panel(panel)
-        if not self.panels or not self.seams:
-            raise self._refusal("it has no panel or no seam")
+        if not self.panels:
+            raise self._refusal("it has no panel")
 
     def _check_names(self, names: Iterable[str]) -> None:
         for name in names:

@@ -11,6 +11,7 @@ import numpy as np
 from core.document.block import RING, ROOT, Block, Seam, without_side
 from core.document.cloth import Cloth, Pair
 from core.document.garment_pattern import ALLOWANCE, GarmentPattern
+from core.errors import PatternError
 from core.geometry.mesh import Points
 from core.geometry.plane_sections import arc_length
 from core.landmarks.types import SIDES
@@ -97,6 +98,11 @@ def cut_garment(drawing: SeamDrawing, block: Block, is_bridged: bool = True) -> 
 
     Raises PatternError, LineError for a body that it does not fit.
     """
+    if not block.seams:
+        raise PatternError(
+            Message("The block {name} cannot be used: {why}.", name=block.name, why="it has no seam"),
+            Message("Correct the file or choose another block."),
+        )
     curves = drawing.curves(block)
     cut = cut_surface(drawing.places.skin, surface_curves(curves))
     panels = cut_panels(

@@ -32,7 +32,6 @@ def panel(values: Values, name: str) -> Values:
 @pytest.mark.parametrize(
     "change",
     [
-        lambda block: block.update(seams=[]),
         lambda block: block.update(panels=[]),
         lambda block: panel(block, "bridge").update(name="cradle left"),
         lambda block: seam(block, "bridge top").update(name="wire right"),

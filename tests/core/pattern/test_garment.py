@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from whole_trunk import trunk_stages
 
+from core.errors import PatternError
 from core.export.pattern_data import seam_values
 from core.landmarks.types import SIDES
 from core.pattern.allowance import cut_piece
@@ -83,6 +84,11 @@ def test_every_piece_is_within_its_cut_line(built: Built, block: str, sample: st
         low, high = piece.outline.min(axis=0), piece.outline.max(axis=0)
         np.testing.assert_array_less(made.cut.min(axis=0), low - 6.0)
         np.testing.assert_array_less(high + 6.0, made.cut.max(axis=0))
+
+
+def test_a_block_without_seams_cuts_nothing(built: Built) -> None:
+    with pytest.raises(PatternError):
+        cut_garment(drawing(built("mannequin")), replace(find_block("long-line-band"), seams=()))
 
 
 @pytest.mark.parametrize(("block", "sample"), cases())
