@@ -276,7 +276,7 @@ def test_a_dart_has_a_drill_hole_at_its_tip_and_its_legs(tmp_path, layout):
 
 def test_words_of_another_language_stay_out_of_ascii(tmp_path):
     """A strip in a Japanese window: names of the program in English, its title on paper."""
-    strip = piece_of_strip(Strip("under-bust", "アンダーバスト", 300.0, 30.0), "under-bust", "Band", "ゴム")
+    strip = piece_of_strip(Strip("under-bust", "アンダーバスト", 700.0, 12.0), "under-bust", "Band", "ゴム")
     layout = lay_out([cut_piece(strip)], 600.0)
     texts = [each.dxf.text for each in read_dxf(tmp_path / "p.dxf", layout, "aama").query("TEXT")]
     texts += [each.dxf.text for each in ezdxf.readfile(tmp_path / "p.dxf").blocks["UNDER_BUST"].query("TEXT")]
@@ -286,6 +286,6 @@ def test_words_of_another_language_stay_out_of_ascii(tmp_path):
     assert not any("?" in each for each in texts if not each.startswith("STYLE"))
     write_pattern_svg(tmp_path / "p.svg", layout, HEADING, lambda message: f"<{message}>")
     words = [each.text for each in ElementTree.parse(tmp_path / "p.svg").iter(f"{SVG}text")]
-    assert {"アンダーバスト", "ゴム", "<cut 1>", "<stretch>"} <= set(words)
+    assert words[1:] == ["<stretch>", "アンダーバスト · ゴム · <cut 1> · Customer 0412 · 2026-11-26"]
     write_pieces(tmp_path / "p.csv", [strip])
     assert [(row["piece"], row["cloth"]) for row in rows_of(tmp_path / "p.csv")] == [("under-bust", "Band")]
