@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from core.errors import LineError
 from core.geometry.closest_point import barycentric, nearest_faces
-from core.geometry.mesh import Faces, Flags, Mesh, Points, half_edges
+from core.geometry.mesh import Faces, Indices, Mesh, Points, half_edges, submesh
 from core.geometry.plane_sections import arc_length
 from core.messages import Message
 
@@ -47,11 +47,19 @@ class SurfacePaths:
 
         Raises LineError if they lie on parts of the body that do not hang together.
         """
+        return self._path(start, end, None)
+
+    def length_along_edges(self, start: Points, end: Points) -> float:
+        """Return the length of the way along edges from which the way between two places is found [mm]."""
+        return float(arc_length(self._path(start, end, 0))[-1])
+
+    def _path(self, start: Points, end: Points, most: int | None) -> Points:
+        """Return the way after at most so many steps that shorten it, (k, 3) [mm]."""
         first, last = (int(self._tree.query(place)[1]) for place in (start, end))
         if first == last:
             return np.stack([start, end])
         try:
-            way = np.asarray(self._solver.find_geodesic_path(first, last), dtype=np.float64)
+            way = np.asarray(self._solver.find_geodesic_path(first, last, most), dtype=np.float64)
         except (RuntimeError, ValueError) as problem:
             raise no_path_error() from problem
         # The places themselves stand for the vertices beside them, or the way would go there and back.
@@ -100,33 +108,43 @@ def shortest_path(mesh: Mesh, start: Points, end: Points) -> Points:
     """Return the shortest way over the skin between two places on it, each (3,) [mm], shape (k, 3) [mm].
 
     Only the skin near both is looked at: all places of a way of some length lie within the ellipsoid about
-    its ends that this length spans. Raises LineError where there is no way.
+    its ends that this length spans. The way is shortened from one along edges: where that and the triangles
+    round it are within, it is the same on the whole skin. Raises LineError where there is no way.
     """
-    span = 1.5 * float(np.linalg.norm(end - start)) + 60.0
-    to_ends = np.linalg.norm(mesh.vertices - start, axis=1) + np.linalg.norm(mesh.vertices - end, axis=1)
+    span = 1.25 * float(np.linalg.norm(end - start)) + 20.0
     while True:
-        whole = bool((to_ends < span).all())
         try:
-            way = _way_within(mesh, to_ends < span, start, end)
+            piece = _piece_within(mesh, start, end, span)
+            paths = SurfacePaths(_with_vertex(_with_vertex(piece, start), end))
+            needed = paths.length_along_edges(start, end) + 2.0 * _longest_edge(piece)
         except LineError:
-            if whole:
+            if not np.isfinite(span):
                 raise
             span = np.inf  # the piece hangs together at a corner alone, or not at all
             continue
-        length = float(arc_length(way)[-1])
-        if whole or length <= span:
-            return way
-        span = 1.05 * length
+        if needed <= span:
+            return paths.path(start, end)
+        span = 1.05 * needed
 
 
-def _way_within(mesh: Mesh, near: Flags, start: Points, end: Points) -> Points:
-    rows, faces = np.unique(mesh.faces[near[mesh.faces].all(axis=1)], return_inverse=True)
-    if not len(rows):
+def _piece_within(mesh: Mesh, start: Points, end: Points, span: float) -> Mesh:
+    """Return the triangles with all corners in the ellipsoid of ``span`` [mm]. Raises LineError for none."""
+    rows: Indices = np.arange(len(mesh.faces))
+    if np.isfinite(span):
+        rows = np.sort(mesh.centroid_tree.query_ball_point(0.5 * (start + end), 0.5 * span))
+    own, faces = np.unique(mesh.faces[rows], return_inverse=True)
+    vertices = mesh.vertices[own]
+    near = np.linalg.norm(vertices - start, axis=1) + np.linalg.norm(vertices - end, axis=1) < span
+    faces = faces.reshape(-1, 3)
+    kept = near[faces].all(axis=1)
+    if not kept.any():
         raise no_path_error()
-    piece = Mesh(mesh.vertices[rows], faces.reshape(-1, 3))
-    for place in (start, end):
-        piece = _with_vertex(piece, place)
-    return SurfacePaths(piece).path(start, end)
+    return submesh(Mesh(vertices, faces), kept)
+
+
+def _longest_edge(mesh: Mesh) -> float:
+    corners = mesh.vertices[mesh.faces]
+    return float(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max())
 
 
 def _with_vertex(mesh: Mesh, place: Points) -> Mesh:

@@ -130,9 +130,15 @@ class Mesh:
 
 def submesh(mesh: Mesh, kept: Flags) -> Mesh:
     """Return the ``kept`` (m,) faces of a mesh with the vertices that they use."""
-    used = np.zeros(len(mesh.vertices), dtype=bool)
-    used[mesh.faces[kept]] = True
-    return Mesh(mesh.vertices[used], (np.cumsum(used) - 1)[mesh.faces[kept]])
+    used, faces = own_vertices(mesh.faces[kept], len(mesh.vertices))
+    return Mesh(mesh.vertices[used], faces)
+
+
+def own_vertices(faces: Faces, count: int) -> tuple[Indices, Faces]:
+    """Return which of ``count`` vertices ``faces`` (m, 3) use, (k,), and the faces of these numbers."""
+    used = np.zeros(count, dtype=bool)
+    used[faces] = True
+    return np.flatnonzero(used), (np.cumsum(used) - 1)[faces]
 
 
 def quadric_terms(u: Floats, v: Floats) -> Floats:

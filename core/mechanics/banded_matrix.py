@@ -168,13 +168,19 @@ class Band:
         return sparse.csc_array((entries.value[kept], where), shape=(size, entries.width))
 
     def cholesky(self, lower: Floats) -> Solve | None:
-        """Return a solver of the symmetric matrix with this lower band, None unless positive definite."""
-        factor, bad = lapack.dpbtrf(lower.reshape(self.size, self.reach + 1).T, lower=1)
+        """Return a solver of the symmetric matrix with this lower band, None unless positive definite.
+
+        One of complex numbers is Hermitian.
+        """
+        hermitian = np.iscomplexobj(lower)
+        factorise = lapack.zpbtrf if hermitian else lapack.dpbtrf
+        back = lapack.zpbtrs if hermitian else lapack.dpbtrs
+        factor, bad = factorise(lower.reshape(self.size, self.reach + 1).T, lower=1)
         if bad:
             return None
 
         def solve(right: Floats) -> Floats:
-            found, _ = lapack.dpbtrs(factor, right[self._order], lower=1)
+            found, _ = back(factor, right[self._order], lower=1)
             return np.asarray(found[self.place])
 
         return solve

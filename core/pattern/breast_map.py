@@ -14,7 +14,7 @@ import numpy as np
 
 from core.errors import PatternError
 from core.geometry.closest_point import nearest_faces
-from core.geometry.mesh import Flags, Floats, Mesh, Points, submesh, unit
+from core.geometry.mesh import Floats, Mesh, Points, unit
 from core.geometry.plane_sections import arc_length, interpolate
 from core.landmarks.types import Landmarks
 from core.messages import Message, SideName
@@ -39,7 +39,7 @@ ABOVE = 1.08
 class BreastMap:
     """The ``rays`` (RAYS, k, 3) [mm] of a breast, every ``STEP`` from its bust point, and its root.
 
-    ``root`` (RAYS,) [mm] is how far the root of the breast is on each. ``skin`` is the skin round it.
+    ``root`` (RAYS,) [mm] is how far the root of the breast is on each. ``skin`` is that of the body.
     """
 
     skin: Mesh
@@ -118,15 +118,14 @@ def breast_map(skin: Mesh, landmarks: Landmarks, side: str) -> BreastMap:
     marks = {name: landmarks.position(f"root_{name}_{side}") for name in ("outer", "inner")}
     outer, inner = marks["outer"], marks["inner"]
     marks["fold"] = landmarks.position(f"fold_{side}")
-    near = submesh(skin, _round(skin, apex))
-    apex = nearest_faces(near, apex[None], near.centroid_tree)[1][0]
+    apex = nearest_faces(skin, apex[None], skin.centroid_tree)[1][0]
     axis = (apex - 0.5 * (outer + inner)) * [1.0, 1.0, 0.0]
     up, axis = np.array([0.0, 0.0, 1.0]), unit(axis)
     outward = np.cross(axis, up)
     outward *= np.sign(outward @ (outer - inner))
     turn = np.radians(np.arange(RAYS) * 360.0 / RAYS)[:, None]
     ways = np.cos(turn) * up + np.sin(turn) * outward
-    walked = walk_planes(near, apex, ways, unit(np.cross(axis, ways)), REACH)
+    walked = walk_planes(skin, apex, ways, unit(np.cross(axis, ways)), REACH)
     if min(arc_length(each)[-1] for each in walked) < STEP:
         raise PatternError(
             Message("The skin around the {side} breast is incomplete.", side=SideName(side)),
@@ -134,13 +133,7 @@ def breast_map(skin: Mesh, landmarks: Landmarks, side: str) -> BreastMap:
         )
     rays = np.stack([_evenly(each) for each in walked])
     root = _root(rays, apex, (up, outward), marks)
-    return BreastMap(near, rays, root)
-
-
-def _round(skin: Mesh, apex: Points) -> Flags:
-    """Return the faces round a bust point, (m,)."""
-    near = np.linalg.norm(skin.vertices - apex, axis=1) < REACH + 20.0
-    return np.asarray(near[skin.faces].any(axis=1))
+    return BreastMap(skin, rays, root)
 
 
 def _evenly(walked: Points) -> Points:

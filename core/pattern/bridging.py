@@ -10,12 +10,24 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import pairwise
+from typing import Literal
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.linalg import splu
+from scipy.sparse.linalg import SuperLU, splu
 
-from core.geometry.mesh import Faces, Flags, Floats, Indices, Mesh, Points, area_vectors, boundary_loops, unit
+from core.geometry.mesh import (
+    Faces,
+    Flags,
+    Floats,
+    Indices,
+    Points,
+    area_vectors,
+    boundary_loops,
+    own_vertices,
+    unit,
+)
 from core.pattern.surface_cut import CutSkin
 
 TENSION = (10.0, 1.0)
@@ -28,6 +40,7 @@ LEAST = 0.2
 """Nearer to the skin than this cloth lies on it [mm]; ours."""
 
 _ROUNDS = 60  # of finding out where the cloth lies on the skin; most hollows take ten
+_GROWING = 4  # of them, in which it grows faster: that halves them where they are many
 _SHORTEST = 0.5  # steps of a cut skin may be shorter, but count as so long [mm]
 _MISS = 1.0  # an edge off the skin is in the plane of three places on it within this [mm]
 _REACH = 15.0  # of the place within the cloth that an edge is told from [mm]
@@ -41,7 +54,9 @@ def bridged(places: Points, faces: Faces, normals: Points, bridges: Flags | None
     them if it is None.
     """
     may = np.ones(len(places), dtype=bool) if bridges is None else bridges
-    lifted, ways = _taut(_stiffness(places, faces), places, faces, normals, may)
+    loops = boundary_loops(faces)
+    weights = _stiffness(places, faces, [(_edges(loops), EDGE)])
+    lifted, ways = _taut(weights, places, faces, loops, normals, may)
     return places + lifted[:, None] * ways
 
 
@@ -51,78 +66,88 @@ def bridged_cut(cut: CutSkin, faces: Faces, wires: Sequence[int] = (), bands: Se
     It stays on the skin along the curves with the numbers ``wires``; those of ``bands`` are elastic and span
     only what is hollow along themselves.
     """
-    used, own = np.unique(faces, return_inverse=True)
-    own = own.reshape(-1, 3)
-    may = np.ones(len(cut.vertices), dtype=bool)
+    used, own = own_vertices(faces, len(cut.vertices))
+    is_used, may = np.zeros(len(cut.vertices), dtype=bool), np.ones(len(cut.vertices), dtype=bool)
+    is_used[used] = True
     for curve in wires:
         may[cut.chains[curve]] = False
-    normals = Mesh(cut.vertices, cut.faces).vertex_normals[used]
-    places = cut.vertices[used]
-    weights = sparse.csr_array(
-        _stiffness(places, own)
-        + _strings(places, _inner_seams(cut, used, bands), EDGE)
-        + _strings(places, _inner_seams(cut, used, None), SEAM)
-    )
-    lifted, ways = _taut(weights, places, own, normals, may[used])
+    places, loops = cut.vertices[used], boundary_loops(own)
+    seams, elastics = (_inner_seams(cut, is_used, curves) for curves in (None, bands))
+    lines = [(_edges(loops), EDGE), (elastics, EDGE), (seams, SEAM)]
+    weights = _stiffness(places, own, lines)
+    normals = _normals(cut, is_used)
+    lifted, ways = _taut(weights, places, own, loops, normals, may[used])
     off = lifted > LEAST
     if not off.any():
         return cut
-    shares = sparse.coo_array(_spread(weights, places, own, places + lifted[:, None] * ways, off))
+    shares = sparse.coo_array(_spread(weights, places, loops, places + lifted[:, None] * ways, off))
     entries = (shares.data, (used[shares.coords[0]], used[shares.coords[1]]))
-    others = np.ones(len(cut.vertices))
-    others[used] = 0.0
-    spread = sparse.coo_array(entries, (len(others),) * 2).tocsr() + sparse.diags_array(others)
+    spread = sparse.coo_array(entries, (len(is_used),) * 2).tocsr() + sparse.diags_array(~is_used * 1.0)
     mix = sparse.csr_array(spread @ cut.mix)
     return replace(cut, mix=mix, vertices=mix @ cut.skin.vertices)
 
 
-def _inner_seams(cut: CutSkin, used: Indices, curves: Sequence[int] | None) -> Indices:
-    """Return the steps of ``curves``, of all if None, between the vertices ``used``, (e, 2) of them."""
-    chosen = np.isin(cut.edges, used).all(axis=1)
+def _normals(cut: CutSkin, used: Flags) -> Points:
+    """Return the normals of the vertices that are ``used`` (w,), also of the skin round them, (n, 3) [1]."""
+    faces = cut.faces[used[cut.faces[:, 0]] | used[cut.faces[:, 1]] | used[cut.faces[:, 2]]]
+    vectors = np.repeat(area_vectors(cut.vertices, faces), 3, axis=0)
+    total = [np.bincount(faces.ravel(), vectors[:, axis], len(used))[used] for axis in range(3)]
+    return unit(np.stack(total, axis=1))
+
+
+def _inner_seams(cut: CutSkin, used: Flags, curves: Sequence[int] | None) -> Indices:
+    """Return the steps of ``curves``, of all if None, between vertices that are ``used``, (e, 2) of them."""
+    chosen = used[cut.edges].all(axis=1)
     if curves is not None:
         chosen &= np.isin(cut.curve, np.array(curves, dtype=np.int64))
-    return np.searchsorted(used, cut.edges[chosen])
+    return np.asarray((np.cumsum(used) - 1)[cut.edges[chosen]])
 
 
 def _spread(
-    weights: sparse.csr_array, places: Points, faces: Faces, lifted: Points, off: Flags
+    weights: sparse.csr_array, places: Points, loops: Sequence[Indices], lifted: Points, off: Flags
 ) -> sparse.csr_array:
     """Return all places as shares of those that lie on the skin, (n, n).
 
     Those ``off`` it are at rest in a membrane of stiffness ``weights`` (n, n); edges stay where they were
     ``lifted`` (n, 3) to within the plane of three places on the skin.
     """
-    loops = boundary_loops(faces)
     on_edge = np.zeros(len(places), dtype=bool)
     on_edge[np.concatenate(loops)] = True
     off = off.copy()
-    told = list(_edge_shares(loops, lifted, off, ~off & ~on_edge))
-    inner = off & ~on_edge
-    rows = np.repeat([row for row, _, _ in told], 3).astype(np.int64)
-    columns = np.array([column for _, own, _ in told for column in own], dtype=np.int64)
-    values = np.array([share for _, _, own in told for share in own])
-    resting = np.flatnonzero(~off)
-    entries = (
-        np.append(values, np.ones(len(resting))),
-        (np.append(rows, resting), np.append(columns, resting)),
-    )
-    known = sparse.csr_array(entries, shape=weights.shape)
+    edges = list(_edge_shares(loops, lifted, off, ~off & ~on_edge))
+    inner, resting = off & ~on_edge, np.flatnonzero(~off)
+    told = [(resting, resting, np.ones(len(resting))), *edges]
+    rows, columns, values = (np.concatenate(each) for each in zip(*told, strict=True))
+    known = sparse.csr_array((values, (rows, columns)), shape=weights.shape)
     if not inner.any():
         return known
-    pull = sparse.csr_array(weights[inner][:, ~inner] @ known[~inner])
-    used = np.unique(pull.indices)
-    shares = -splu(sparse.csc_array(weights[inner][:, inner])).solve(pull[:, used].toarray())
-    rows = np.repeat(np.flatnonzero(inner), len(used))
-    spread = sparse.coo_array((shares.ravel(), (rows, np.tile(used, int(inner.sum())))), weights.shape)
-    return sparse.csr_array(known + spread)
+    return sparse.csr_array(known + _resting(weights, known, inner))
+
+
+def _resting(weights: sparse.csr_array, known: sparse.csr_array, inner: Flags) -> sparse.coo_array:
+    """Return the places that are ``inner`` (n,) as shares of the others, hollow by hollow, (n, n)."""
+    rows = np.flatnonzero(inner)
+    count, label = sparse.csgraph.connected_components(weights[rows][:, rows], directed=False)
+    order = rows[np.argsort(label, kind="stable")]
+    stiff = sparse.csr_array(weights[order][:, order])
+    pull = sparse.csr_array(weights[order][:, ~inner] @ known[~inner])
+    ends = np.append(0, np.cumsum(np.bincount(label, minlength=count)))
+    found = []
+    for begin, end in pairwise(ends.tolist()):
+        own = pull[begin:end]
+        used = np.unique(own.indices)
+        shares = -_factor(stiff[begin:end, begin:end]).solve(own[:, used].toarray())
+        found.append((shares.ravel(), np.repeat(order[begin:end], len(used)), np.tile(used, end - begin)))
+    value, row, column = (np.concatenate(each) for each in zip(*found, strict=True))
+    return sparse.coo_array((value, (row, column)), weights.shape)
 
 
 def _edge_shares(
     loops: Sequence[Indices], lifted: Points, off: Flags, inside: Flags
-) -> Iterator[tuple[int, Indices, Floats]]:
-    """Yield each place of an edge that is off the skin, three places on the skin, and its shares of them.
+) -> Iterator[tuple[Indices, Indices, Floats]]:
+    """Yield places of an edge that are off the skin, each thrice, those on the skin, and the shares of them.
 
-    They are where the edge leaves the skin, where it comes back, and one ``inside`` the cloth (n,). A place
+    These are where the edge leaves the skin, where it comes back, and one ``inside`` the cloth (n,). A place
     that is not in their plane is put on the skin, and no longer ``off``.
     """
     within = np.flatnonzero(inside)
@@ -149,84 +174,107 @@ def _edge_shares(
                 off[loop[middle % len(loop)]] = False
                 runs += [(first, middle), (middle, last)]
                 continue
-            for place, (b, c) in zip(free.tolist(), shares.T, strict=True):
-                yield place, np.array([one, two, third]), np.array([1.0 - b - c, b, c])
+            b, c = shares
+            yield (
+                np.tile(free, 3),
+                np.repeat([one, two, third], len(free)),
+                np.concatenate([1.0 - b - c, b, c]),
+            )
 
 
-def _tension(normals: Points) -> Floats:
-    """Return the tension of cloth at places with these ``normals`` (n, 3), (n, 3, 3) [1].
+def _tension(normals: Points) -> tuple[Points, Floats, Floats]:
+    """Return the way across the body at places with these ``normals`` (n, 3), (n, 3), and tensions (n,) [1].
 
-    The greater one runs round the body; under the crotch, where the skin lies level, it runs all ways.
+    The first one is in all directions of the cloth, the second one more across. Under the crotch, where the
+    skin lies level, the greater tension runs all ways.
     """
     across = unit(np.cross([0.0, 0.0, 1.0], normals) + 1e-12)
-    level = (normals[:, 2] ** 4)[:, None, None]
-    within = np.eye(3) - normals[:, :, None] * normals[:, None]
-    most = (1.0 - level) * across[:, :, None] * across[:, None] + level * within
-    return np.asarray(TENSION[1] * np.eye(3) + (TENSION[0] - TENSION[1]) * most)
+    more = (TENSION[0] - TENSION[1]) * normals[:, 2] ** 4
+    return across, TENSION[1] + more, TENSION[0] - TENSION[1] - more
+
+
+def _factor(
+    matrix: sparse.csr_array, order: Literal["MMD_AT_PLUS_A", "NATURAL"] = "MMD_AT_PLUS_A"
+) -> SuperLU:
+    """Return the factors of a symmetric ``matrix``, in its own order where that is good already."""
+    return splu(matrix.T, order, diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
 
 def _taut(
-    weights: sparse.csr_array, places: Points, faces: Faces, normals: Points, may: Flags
+    weights: sparse.csr_array,
+    places: Points,
+    faces: Faces,
+    loops: Sequence[Indices],
+    normals: Points,
+    may: Flags,
 ) -> tuple[Floats, Points]:
     """Return how far a taut cloth is off the skin, (n,) [mm], and in which directions, (n, 3)."""
-    ways = _smoothed(weights, places, faces, normals)
+    ways, order = _smoothed(weights, places, faces, normals)
     stiff = _along(weights, ways)
-    force = np.einsum("nx,nx->n", ways, _without_edges(weights @ places, places, faces, normals))
-    return _lifted(stiff, force, may), ways
+    force = np.einsum("nx,nx->n", ways, _without_edges(weights @ places, places, loops, normals))
+    return _lifted(stiff, force, may, order), ways
 
 
-def _lifted(stiff: sparse.csr_array, force: Floats, may: Flags) -> Floats:
+def _lifted(stiff: sparse.csr_array, force: Floats, may: Flags, order: Indices) -> Floats:
     """Return the least distances u >= 0 of u.A.u / 2 + b.u, 0 where it ``may`` not leave the skin.
 
-    By the primal-dual active set method (M. Hintermüller, K. Ito, K. Kunisch, SIAM J. Optim. 13, 2002).
+    By the primal-dual active set method (M. Hintermüller, K. Ito, K. Kunisch, SIAM J. Optim. 13, 2002). In
+    the first rounds the places off the skin grow by one more row: what is too much goes in the next. In
+    the ``order`` (n,) of places factors are small.
     """
     lifted, off = np.zeros(len(force)), may & (force < 0.0)
-    for _ in range(_ROUNDS):
+    for number in range(_ROUNDS):
         lifted[:] = 0.0
-        free = np.flatnonzero(off)
+        free = order[off[order]]
         if len(free):
-            lifted[free] = splu(stiff[free][:, free].tocsc()).solve(-force[free])
+            lifted[free] = _factor(stiff[free][:, free], "NATURAL").solve(-force[free])
         contact = stiff @ lifted + force
         before, off = off, may & np.where(off, lifted > 0.0, contact < 0.0)
         if (before == off).all():
             break
+        if number < _GROWING:
+            off |= may & ~before & (abs(stiff) @ (off & ~before) > 0.0)
     return np.maximum(lifted, 0.0)
 
 
-def _stiffness(places: Points, faces: Faces) -> sparse.csr_array:
-    """Return the stiffness of a membrane under ``TENSION``, positive semidefinite, (n, n) [1]."""
+def _stiffness(places: Points, faces: Faces, lines: Sequence[tuple[Indices, float]]) -> sparse.csr_array:
+    """Return the stiffness of a membrane under ``TENSION``, positive semidefinite, (n, n) [1].
+
+    ``lines`` (e, 2), its edges and seams, are under a tension of their own [mm].
+    """
     corners = places[faces]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     double = np.maximum(np.linalg.norm(normal, axis=1), 1e-12)
     normal /= double[:, None]
     slopes = np.cross(normal[:, None], np.roll(corners, -2, axis=1) - np.roll(corners, -1, axis=1))
     slopes /= double[:, None, None]
-    values = 0.5 * double[:, None, None] * (slopes @ _tension(normal) @ slopes.transpose(0, 2, 1))
-    row, column = np.repeat(faces, 3, axis=1), np.tile(faces, 3)
-    cloth = sparse.csr_array((values.ravel(), (row.ravel(), column.ravel())), shape=(len(places),) * 2)
-    return sparse.csr_array(cloth + _strings(places, _edges(faces), EDGE))
+    across, within, most = _tension(normal)
+    along = np.einsum("mkx,mx->mk", slopes, across)
+    values = most[:, None, None] * along[:, :, None] * along[:, None]
+    values += within[:, None, None] * (slopes @ slopes.transpose(0, 2, 1))
+    values *= 0.5 * double[:, None, None]
+    rows, columns, entries = [np.repeat(faces, 3, axis=1)], [np.tile(faces, 3)], [values]
+    for line, tension in lines:
+        first, second = line.T
+        length = np.maximum(np.linalg.norm(places[second] - places[first], axis=1), _SHORTEST)
+        rows += [first, second, first, second]
+        columns += [second, first, first, second]
+        entries += [-tension / length, -tension / length, tension / length, tension / length]
+    row, column, value = (np.concatenate([each.ravel() for each in at]) for at in (rows, columns, entries))
+    return sparse.csr_array((value, (row, column)), shape=(len(places),) * 2)
 
 
-def _strings(places: Points, lines: Indices, tension: float) -> sparse.csr_array:
-    """Return the stiffness of ``lines`` (e, 2), edges or seams, under a ``tension`` [mm], (n, n) [1]."""
-    first, second = lines.T
-    length = np.maximum(np.linalg.norm(places[second] - places[first], axis=1), _SHORTEST)
-    pull = sparse.csr_array((tension / length, (first, second)), shape=(len(places),) * 2)
-    pull = sparse.csr_array(pull + pull.T)
-    return sparse.csr_array(sparse.diags_array(pull.sum(axis=1)) - pull)
+def _edges(loops: Sequence[Indices]) -> Indices:
+    return np.concatenate([np.stack([at, np.roll(at, -1)], axis=1) for at in loops])
 
 
-def _edges(faces: Faces) -> Indices:
-    return np.concatenate([np.stack([at, np.roll(at, -1)], axis=1) for at in boundary_loops(faces)])
-
-
-def _without_edges(force: Points, places: Points, faces: Faces, normals: Points) -> Points:
+def _without_edges(force: Points, places: Points, loops: Sequence[Indices], normals: Points) -> Points:
     """Return the forces of a membrane, (n, 3), without what draws its edges aside within the skin.
 
     An edge is held by what it is sewn to: without that the cloth would draw back from it, and off the skin.
     """
     force = force.copy()
-    for loop in boundary_loops(faces):
+    for loop in loops:
         step = unit(np.roll(places[loop], -1, axis=0) - places[loop])
         aside = unit(np.cross(step + np.roll(step, 1, axis=0), normals[loop]))
         force[loop] -= np.einsum("nx,nx->n", force[loop], aside)[:, None] * aside
@@ -241,9 +289,15 @@ def _along(weights: sparse.csr_array, ways: Points) -> sparse.csr_array:
     return sparse.csr_array((turned, (row, column)), shape=weights.shape)
 
 
-def _smoothed(weights: sparse.csr_array, places: Points, faces: Faces, normals: Points) -> Points:
-    """Return directions that change slowly from place to place, so that they lead out of a cleft, (n, 3)."""
+def _smoothed(
+    weights: sparse.csr_array, places: Points, faces: Faces, normals: Points
+) -> tuple[Points, Indices]:
+    """Return directions that change slowly from place to place, so that they lead out of a cleft, (n, 3).
+
+    Returns also an order of the places, (n,), in which factors are small.
+    """
     corner = np.repeat(np.linalg.norm(area_vectors(places, faces), axis=1) / 3.0, 3)
     share = np.bincount(faces.ravel(), corner, len(places)) + 1e-6
     spread = sparse.diags_array(share) + _SMOOTHED**2 / TENSION[0] * weights
-    return unit(splu(sparse.csc_array(spread)).solve(share[:, None] * normals))
+    factor = _factor(sparse.csr_array(spread))
+    return unit(factor.solve(share[:, None] * normals)), np.argsort(factor.perm_c)

@@ -6,7 +6,8 @@ import numpy as np
 from scipy import sparse
 from scipy.spatial import Delaunay, QhullError, cKDTree
 
-from core.geometry.mesh import Faces, Floats, Indices, boundary_loops, half_edges
+from core.geometry.closest_point import barycentric, nearest_faces
+from core.geometry.mesh import Faces, Flags, Floats, Indices, Mesh, boundary_loops, half_edges
 from core.geometry.triangulate import clip_ears, inside_polygon
 
 _CLEAR = 0.6
@@ -14,6 +15,10 @@ _CLEAR = 0.6
 
 _THREAD = 1e-6
 """A triangle of less area than this part of its longest side squared is none [1]."""
+
+
+_NEAR = 6
+"""A place is looked for in so many triangles first: hardly one in a thousand is in none of them."""
 
 
 def grid_within(ring: Floats, fixed: Floats, spacing: float) -> Floats:
@@ -29,8 +34,8 @@ def grid_within(ring: Floats, fixed: Floats, spacing: float) -> Floats:
     places = places[((places > low) & (places < high)).all(axis=1)]
     step = np.roll(ring, -1, axis=0) - ring
     dense = [ring + share * step for share in (0.0, 1 / 3, 2 / 3)]
-    away = np.asarray(cKDTree(np.concatenate([*dense, fixed])).query(places)[0])
-    places = places[away > _CLEAR * spacing]
+    tree = cKDTree(np.concatenate([*dense, fixed]))
+    places = places[np.isinf(tree.query(places, distance_upper_bound=_CLEAR * spacing)[0])]
     return np.asarray(places[inside_polygon(ring, places)])
 
 
@@ -48,17 +53,39 @@ def joined_by_triangles(points: Floats, border: Indices, lines: Indices) -> Face
     faces = _without_threads(points, np.where((turn < 0.0)[:, None], faces[:, ::-1], faces))
     outline = np.stack([border, np.roll(border, -1)], axis=1)
     wanted = np.concatenate([outline, lines])
-    for start, end in wanted[~np.isin(_keys(wanted), _keys(half_edges(faces)))].tolist():
+    has_edge = _ahead(faces, len(points))
+    has_edge |= has_edge.T
+    for start, end in wanted[~has_edge[wanted[:, 0], wanted[:, 1]]].tolist():
         changed = _with_edge(points, faces, start, end)
         if changed is None:
             return None
         faces = changed
-    faces = faces[inside_polygon(points[border], points[faces].mean(axis=1))]
-    sides = half_edges(faces)
-    ahead, back = (side[:, 0] << 31 | side[:, 1] for side in (sides, sides[:, ::-1]))
-    free = np.sort(ahead[~np.isin(ahead, back)])
-    whole = np.array_equal(free, np.sort(outline[:, 0] << 31 | outline[:, 1]))
-    return faces if whole and len(np.unique(ahead)) == len(ahead) else None
+    faces = faces[_is_inside(points, faces, border)]
+    ahead, around = _ahead(faces, len(points)), np.zeros((len(points), len(points)), dtype=bool)
+    around[outline[:, 0], outline[:, 1]] = True
+    whole = np.array_equal(ahead & ~ahead.T, around)
+    return faces if whole and np.count_nonzero(ahead) == faces.size else None
+
+
+def _ahead(faces: Faces, count: int) -> Flags:
+    """Return from which of ``count`` points to which a side of a triangle leads, (count, count)."""
+    ahead = np.zeros((count, count), dtype=bool)
+    start, end = half_edges(faces).T
+    ahead[start, end] = True
+    return ahead
+
+
+def _is_inside(points: Floats, faces: Faces, border: Indices) -> Flags:
+    """Return which ``faces`` are within the ring ``border``, whose sides none crosses, (m,).
+
+    Those at another point are: all points are within it.
+    """
+    inside = np.ones(len(points), dtype=bool)
+    inside[border] = False
+    found: Flags = np.asarray(inside[faces].any(axis=1))
+    unsure = np.flatnonzero(~found)
+    found[unsure] = inside_polygon(points[border], points[faces[unsure]].mean(axis=1))
+    return found
 
 
 def _without_threads(points: Floats, faces: Faces) -> Faces:
@@ -110,6 +137,27 @@ def _left_of(start: Floats, end: Floats, place: Floats) -> Floats:
     """Return twice the areas of triangles, positive where ``place`` is left of the way to ``end``."""
     way, to = end - start, place - start
     return np.asarray(way[..., 0] * to[..., 1] - way[..., 1] * to[..., 0])
+
+
+def located(chart: Floats, faces: Faces, places: Floats) -> tuple[Indices, Floats]:
+    """Return for ``places`` (k, 2) in a ``chart`` (v, 2) of ``faces`` which one each is in, and its shares.
+
+    The nearest one for a place that is in none; shares (k, 3) are of the corners.
+    """
+    corners = chart[faces]
+    tree = cKDTree(corners.mean(axis=1), compact_nodes=False, balanced_tree=False)
+    near = np.asarray(tree.query(places, np.arange(1, min(_NEAR, len(faces)) + 1))[1], dtype=np.int64)
+    every = np.repeat(places, near.shape[1], axis=0)
+    shares = barycentric(corners[near.ravel()], every).reshape(*near.shape, 3)
+    within: Flags = np.asarray((shares > 0.0).all(axis=2))
+    best = np.arange(len(places)), within.argmax(axis=1)
+    at, own = near[best], shares[best]
+    out = np.flatnonzero(~within[best])
+    if len(out):
+        flat = Mesh(np.pad(chart, [(0, 0), (0, 1)]), faces)
+        at[out], foot = nearest_faces(flat, np.pad(places[out], [(0, 0), (0, 1)]))
+        own[out] = barycentric(flat.vertices[faces[at[out]]], foot)
+    return at, own
 
 
 def cut_open(faces: Faces, edges: Indices) -> tuple[Faces, Indices]:

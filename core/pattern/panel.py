@@ -10,11 +10,10 @@ import numpy as np
 from scipy import sparse
 
 from core.errors import PatternError
-from core.geometry.closest_point import barycentric, nearest_faces
-from core.geometry.mesh import Faces, Floats, Indices, Mesh, Points, area_vectors, half_edges, unit
+from core.geometry.mesh import Faces, Floats, Indices, Points, area_vectors, face_neighbours, half_edges, unit
 from core.geometry.plane_sections import arc_length
 from core.messages import Message
-from core.pattern.even_points import cut_open, grid_within, joined_by_triangles
+from core.pattern.even_points import cut_open, grid_within, joined_by_triangles, located
 from core.pattern.panel_border import BorderPiece, SeamNet, SkinRegion, seam_net, skin_regions
 from core.pattern.plane_maps import PlaneBand, conformal_map, rigid_map, triangle_slopes
 from core.pattern.surface_cut import CutSkin
@@ -270,11 +269,12 @@ def _even_panel(
             Message('The panel "{name}" is too strongly curved to be laid flat.', name=seed.name),
             Message("Divide it by a seam."),
         )
-    flat = Mesh(np.pad(chart, [(0, 0), (0, 1)]), region.faces)
-    at, foot = nearest_faces(flat, np.pad(inner, [(0, 0), (0, 1)]))
+    at, inner_shares = located(chart, region.faces, inner)
     vertices = np.concatenate([outline.vertices, region.faces[at]])
-    shares = np.concatenate([outline.shares, barycentric(flat.vertices[region.faces[at]], foot)])
-    faces, former = cut_open(faces, outline.lines)
+    shares = np.concatenate([outline.shares, inner_shares])
+    former = np.arange(len(points))
+    if len(outline.lines):
+        faces, former = cut_open(faces, outline.lines)
     rows = np.repeat(np.arange(len(former)), 3)
     columns = region.source[vertices[former]].ravel()
     entries = (shares[former].ravel(), (rows, columns))
@@ -295,9 +295,7 @@ def _sides(
         for path, (_, points) in enumerate(outline.paths)
         for at, step in enumerate(zip(points[:-1].tolist(), points[1:].tolist(), strict=True))
     }
-    sides = half_edges(faces)
-    keys, back = (each[:, 0] << 31 | each[:, 1] for each in (sides, sides[:, ::-1]))
-    border = sides[~np.isin(keys, back)]
+    border = half_edges(faces)[face_neighbours(faces).T.ravel() < 0]
     found: dict[int, list[tuple[int, int, int]]] = {}
     for (start, end), step in zip(border.tolist(), former[border].tolist(), strict=True):
         path, at = steps[step[0], step[1]]
@@ -322,13 +320,13 @@ def _grain(places: Points, faces: Faces, flat: Floats, up: Points, turn: float) 
     """
     vectors = area_vectors(places, faces)
     normal = unit(vectors)
-    along = up - (normal @ up)[:, None] * normal
+    along, aside = up - (normal @ up)[:, None] * normal, np.cross(normal, up)
     angle = np.radians(turn)
-    along = np.cos(angle) * along + np.sin(angle) * np.cross(normal, along)
+    aside = np.cos(angle) * aside - np.sin(angle) * along  # of the turned grain line
     corners = places[faces]
-    opposite = np.roll(corners, -2, axis=1) - np.roll(corners, -1, axis=1)
-    slopes = np.cross(normal[:, None], opposite)  # twice the area times the slopes of the hat functions
-    pull = np.bincount(faces.ravel(), 0.5 * np.einsum("mkc,mc->mk", slopes, along).ravel(), len(places))
+    opposite = np.roll(corners, -1, axis=1) - np.roll(corners, -2, axis=1)
+    # Twice the area times the slope of a hat function is the side opposite it, turned by 90 degrees.
+    pull = np.bincount(faces.ravel(), 0.5 * np.einsum("mkc,mc->mk", opposite, aside).ravel(), len(places))
     total = pull @ flat
     if np.hypot(*total) > _LEVEL * np.linalg.norm(vectors, axis=1).sum():
         return np.asarray(pull, dtype=np.float64)
@@ -340,7 +338,7 @@ def _grain(places: Points, faces: Faces, flat: Floats, up: Points, turn: float) 
 
 def _chart(places: Points, faces: Faces, up: Points, turn: float) -> Floats:
     """Return the skin of a panel roughly laid flat, its grain line upward, (v, 2) [mm]."""
-    slopes = triangle_slopes(places, faces)
-    chart = rigid_map(faces, slopes, conformal_map(places, faces, slopes))
+    slopes, band = triangle_slopes(places, faces), PlaneBand.of(faces, len(places), 1)
+    chart = rigid_map(faces, slopes, conformal_map(places, faces, slopes, band), band)
     x, y = _grain(places, faces, chart, up, turn) @ chart
     return np.asarray(chart @ np.array([[y, x], [-x, y]]) / np.hypot(x, y))

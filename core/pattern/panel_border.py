@@ -10,8 +10,8 @@ import numpy as np
 from scipy import sparse
 
 from core.errors import PatternError
-from core.geometry.closest_point import nearest_faces
-from core.geometry.mesh import Faces, Indices, Mesh, Points, area_vectors, face_neighbours, half_edges
+from core.geometry.closest_point import nearest_faces, nearest_on
+from core.geometry.mesh import Faces, Flags, Indices, Points, area_vectors, half_edges, own_vertices
 from core.messages import Message
 from core.pattern.even_points import cut_open
 from core.pattern.surface_cut import CutSkin
@@ -46,11 +46,20 @@ class SeamNet:
     def _keys(self) -> Indices:
         return np.asarray(self.cut.edges[:, 0] << 31 | self.cut.edges[:, 1])
 
+    @cached_property
+    def _on_curve(self) -> Flags:
+        flags = np.zeros(len(self.cut.vertices), dtype=bool)
+        flags[self.cut.edges] = True
+        return flags
+
     def find(self, sides: Indices) -> Indices:
         """Return the edge of a curve that each of ``sides`` (k, 2) is, -1 if none, (k,)."""
-        key = sides.min(axis=1) << 31 | sides.max(axis=1)
+        found = np.full(len(sides), -1)
+        may = np.flatnonzero(self._on_curve[sides[:, 0]] & self._on_curve[sides[:, 1]])
+        key = sides[may].min(axis=1) << 31 | sides[may].max(axis=1)
         at = np.minimum(np.searchsorted(self._keys, key), len(self._keys) - 1)
-        return np.where(self._keys[at] == key, at, -1)
+        found[may] = np.where(self._keys[at] == key, at, -1)
+        return found
 
 
 def seam_net(cut: CutSkin) -> SeamNet:
@@ -116,14 +125,13 @@ class SkinRegion:
 def face_regions(net: SeamNet) -> Indices:
     """Return the number of the region of each triangle, (m,): all curves but slits divide them."""
     cut = net.cut
-    sides = half_edges(cut.faces)
-    curve_edge = net.find(sides)
+    curve_edge = net.find(half_edges(cut.faces))
     divides = np.array([not curve.slit for curve in cut.curves])
     barrier = (curve_edge >= 0) & divides[cut.curve[curve_edge]]
-    beyond = face_neighbours(cut.faces).T.ravel()
-    open_side = np.flatnonzero(~barrier & (beyond >= 0))
-    pairs = open_side % len(cut.faces), beyond[open_side]
-    graph = sparse.coo_array((np.ones(len(open_side), dtype=np.int8), pairs), (len(cut.faces),) * 2)
+    beyond = np.where(barrier.reshape(3, -1).T, -1, cut.face_neighbours)
+    begins = np.append(0, np.cumsum((beyond >= 0).sum(axis=1)))
+    after = beyond[beyond >= 0]
+    graph = sparse.csr_array((np.ones(len(after), dtype=np.int8), after, begins), (len(cut.faces),) * 2)
     return np.asarray(sparse.csgraph.connected_components(graph, directed=False)[1], dtype=np.int64)
 
 
@@ -155,23 +163,25 @@ def _faces_at(cut: CutSkin, places: Points) -> Indices:
     found = []
     for origin, foot in zip(face.tolist(), place, strict=True):
         rows = np.flatnonzero(cut.origin == origin)
-        found.append(rows[nearest_faces(Mesh(cut.vertices, cut.faces[rows]), foot[None])[0][0]])
+        on_each = nearest_on(cut.vertices[cut.faces[rows]], np.repeat(foot[None], len(rows), axis=0))
+        found.append(rows[np.linalg.norm(on_each - foot, axis=1).argmin()])
     return np.array(found, dtype=np.int64)
 
 
 def _region(net: SeamNet, rows: Indices, name: str) -> SkinRegion:
     """Cut a panel's triangles ``rows`` out of the skin, open along curves that have it on both sides."""
     cut = net.cut
-    source, faces = np.unique(cut.faces[rows], return_inverse=True)
-    faces = faces.reshape(-1, 3)
+    source, faces = own_vertices(cut.faces[rows], len(cut.vertices))
     sides = half_edges(faces)
     edge = net.find(source[sides])
     twice = (edge >= 0) & (np.bincount(edge[edge >= 0], minlength=len(cut.edges)) == 2)[edge]
     slit = twice & np.array([curve.slit for curve in cut.curves])[cut.curve[edge]]
     _check_ends(net, edge[twice & ~slit], name)
-    faces, former = cut_open(faces, sides[twice & ~slit])
-    source, sides = source[former], half_edges(faces)
     border = ~np.isin(_keys(sides), _keys(sides[:, ::-1]))
+    if (twice & ~slit).any() or np.bincount(sides[border, 0]).max(initial=0) > 1:
+        faces, former = cut_open(faces, sides[twice & ~slit])
+        source, sides = source[former], half_edges(faces)
+        border = ~np.isin(_keys(sides), _keys(sides[:, ::-1]))
     if (edge[border] < 0).any():
         raise _not_a_disc(net, Message('The panel "{name}" is open.', name=name))
     runs = _in_order(sorted(_runs(net, edge[border], sides[border], source), key=partial(_rank, net)))
@@ -181,7 +191,9 @@ def _region(net: SeamNet, rows: Indices, name: str) -> SkinRegion:
     if characteristic != 1 or not runs:
         raise _not_a_disc(net, Message('The panel "{name}" has no single closed outline.', name=name))
     area = _area(cut.vertices[source], faces)
-    return SkinRegion(faces, source, runs, tuple(slits), area, np.unique(cut.origin[rows]))
+    origin = np.zeros(len(cut.skin.faces), dtype=bool)
+    origin[cut.origin[rows]] = True
+    return SkinRegion(faces, source, runs, tuple(slits), area, np.flatnonzero(origin))
 
 
 def _area(places: Points, faces: Faces) -> float:

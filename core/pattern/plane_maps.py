@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
@@ -14,6 +16,9 @@ from core.mechanics.banded_matrix import Band, Solve
 
 _FLAT = 1e-8
 """The least area of a triangle in parts of its longest side squared [1]: a thread has no slopes."""
+
+Numbers = npt.NDArray[Any]
+"""Real or complex numbers; places in the plane, x + iy [mm]."""
 
 _RIGID_TURNS = 12
 """Turns of the rigid map: more change the points by less than their distance from each other."""
@@ -63,10 +68,10 @@ class PlaneBand:
     def of(cls, faces: Faces, count: int, axes: int) -> PlaneBand:
         """Order ``count`` points (Cuthill and McKee), so that corners of ``faces`` lie near each other."""
         sides = half_edges(faces)
-        graph = sparse.coo_array((np.ones(len(sides)), sides.T), (count, count))
+        both = np.concatenate([sides, sides[:, ::-1]]).T
+        graph = sparse.csr_array((np.ones(2 * len(sides)), both), (count, count))
         place = np.empty(count, dtype=np.int64)
-        symmetric = sparse.csr_array(graph + graph.T)
-        place[reverse_cuthill_mckee(symmetric, symmetric_mode=True)] = np.arange(count)
+        place[reverse_cuthill_mckee(graph, symmetric_mode=True)] = np.arange(count)
         reach = axes * int(np.abs(place[sides[:, 0]] - place[sides[:, 1]]).max()) + axes - 1
         whole = axes * place[:, None] + np.arange(axes)
         corners = whole[faces].reshape(len(faces), 3 * axes)
@@ -75,17 +80,16 @@ class PlaneBand:
         at = (column * (reach + 1) + row - column).ravel()[below]
         return cls(Band(whole.ravel(), reach), at, below)
 
-    def lower(self, blocks: Floats) -> Floats:
+    def lower(self, blocks: Numbers) -> Numbers:
         """Return the lower band of the sum of ``blocks``."""
-        size = self.band.size * (self.band.reach + 1)
-        return np.bincount(self.at, blocks.ravel()[self.below], size).astype(np.float64, copy=False)
+        return _gathered(self.at, blocks.ravel()[self.below], self.band.size * (self.band.reach + 1))
 
     @cached_property
     def diagonal(self) -> Indices:
         """Return where the diagonal lies in the lower band, by coordinate."""
         return np.asarray(self.band.place * (self.band.reach + 1))
 
-    def factor(self, lower: Floats) -> Solve:
+    def factor(self, lower: Numbers) -> Solve:
         """Return a solver of the matrix with this ``lower`` band, its diagonal raised until there is one.
 
         Raises FloatingPointError if the matrix is not finite.
@@ -99,37 +103,28 @@ class PlaneBand:
         return solve
 
 
-def conformal_map(places: Points, faces: Faces, slopes: TriangleSlopes) -> Floats:
+def conformal_map(places: Points, faces: Faces, slopes: TriangleSlopes, band: PlaneBand) -> Floats:
     """Return places in the plane, (p, 2) [mm], whose angles are nearly those on the surface.
 
-    Source: B. Levy et al., "Least Squares Conformal Maps", 2002. Two points far from each other are held.
+    ``band`` has one axis. Source: B. Levy et al., "Least Squares Conformal Maps", 2002, in complex numbers.
+    Two points far from each other are held.
     """
     first = int(np.linalg.norm(places - places.mean(axis=0), axis=1).argmax())
     away = np.linalg.norm(places - places[first], axis=1)
-    second = int(away.argmax())
-    gx, gy = slopes.slopes[..., 0], slopes.slopes[..., 1]
-    same = gx[:, :, None] * gx[:, None] + gy[:, :, None] * gy[:, None]
-    turn = gy[:, :, None] * gx[:, None] - gx[:, :, None] * gy[:, None]
-    parts = np.empty((len(faces), 3, 2, 3, 2))
-    parts[:, :, 0, :, 0] = parts[:, :, 1, :, 1] = same * slopes.areas[:, None, None]
-    parts[:, :, 0, :, 1] = turn * slopes.areas[:, None, None]
-    parts[:, :, 1, :, 0] = -parts[:, :, 0, :, 1]
-    held = np.array([2 * first, 2 * first + 1, 2 * second, 2 * second + 1])
-    flat = np.zeros(2 * len(places))
-    flat[2 * second] = away[second]
-    rows = (2 * faces[:, :, None] + np.arange(2)).reshape(-1, 6)
-    blocks = parts.reshape(-1, 6, 6)
-    pull = _gathered(rows, np.einsum("mij,mj->mi", blocks, flat[rows]), len(flat))
+    held = np.array([first, int(away.argmax())])
+    hats = slopes.slopes[..., 0] + 1j * slopes.slopes[..., 1]
+    blocks = slopes.areas[:, None, None] * hats.conj()[:, :, None] * hats[:, None]
+    flat = np.zeros(len(places), dtype=np.complex128)
+    flat[held[1]] = away[held[1]]
+    pull = _gathered(faces, np.einsum("mij,mj->mi", blocks, flat[faces]), len(flat))
     is_held = np.zeros(len(flat), dtype=bool)
     is_held[held] = True
-    blocks[is_held[rows]] = 0.0
-    blocks.transpose(0, 2, 1)[is_held[rows]] = 0.0
-    band = PlaneBand.of(faces, len(places), 2)
+    blocks[is_held[faces]] = 0.0
+    blocks.transpose(0, 2, 1)[is_held[faces]] = 0.0
     lower = band.lower(blocks)
     lower[band.diagonal[held]] = 1.0
     pull[held] = -flat[held]
-    flat = band.factor(lower)(-pull)
-    return np.asarray(flat.reshape(-1, 2))
+    return _plane(band.factor(lower)(-pull))
 
 
 def jacobians(flat: Floats, faces: Faces, slopes: TriangleSlopes) -> Floats:
@@ -145,36 +140,47 @@ def rotations(jacobian: Floats) -> tuple[Floats, Floats]:
     return cosine / length, sine / length
 
 
-def rigid_map(faces: Faces, slopes: TriangleSlopes, flat: Floats, turns: int = _RIGID_TURNS) -> Floats:
+def rigid_map(
+    faces: Faces, slopes: TriangleSlopes, flat: Floats, band: PlaneBand, turns: int = _RIGID_TURNS
+) -> Floats:
     """Return places in the plane near ``flat`` (p, 2) [mm], each triangle as rigid as possible.
 
-    Source: L. Liu et al., "A Local/Global Approach to Mesh Parameterization", 2008.
+    ``band`` has one axis. Source: L. Liu et al., "A Local/Global Approach to Mesh Parameterization", 2008.
     """
-    scale = np.sqrt(slopes.areas.sum() / max(_plane_area(flat, faces), 1e-12))
-    flat = flat * scale
-    band = PlaneBand.of(faces, len(flat), 1)
+    flat = flat * np.sqrt(slopes.areas.sum() / max(_plane_area(flat, faces), 1e-12))
     weighted = slopes.slopes * slopes.areas[:, None, None]
-    blocks = weighted @ slopes.slopes.transpose(0, 2, 1)
-    lower = band.lower(blocks)
+    lower = band.lower(weighted @ slopes.slopes.transpose(0, 2, 1))
     lower[band.diagonal] *= 1.0 + 1e-12
     lower[band.diagonal[0]] *= 2.0  # holds the piece in its place
     solve = band.factor(lower)
     anchor = 0.5 * lower[band.diagonal[0]] * flat[0]
+    # In complex numbers the nearest rotation has the direction of the sum of slopes times places.
+    corners, shape = (faces.ravel(), np.arange(0, faces.size + 1, 3)), (len(faces), len(flat))
+    hats, pulls = (slopes.slopes[..., 0] - 1j * slopes.slopes[..., 1], weighted @ np.array([1.0, 1j]))
+    turning = sparse.csr_array((hats.ravel(), *corners), shape=shape)
+    gathering = sparse.csr_array((pulls.ravel(), *corners), shape=shape).T
     for _ in range(turns):
-        cosine, sine = rotations(jacobians(flat, faces, slopes))
-        turned = (
-            cosine[:, None] * weighted[..., 0] - sine[:, None] * weighted[..., 1],
-            sine[:, None] * weighted[..., 0] + cosine[:, None] * weighted[..., 1],
-        )
-        pull = np.stack([_gathered(faces, each, len(flat)) for each in turned], axis=1)
+        turned: Numbers = np.asarray(turning @ _complex(flat))
+        pull = _plane(np.asarray(gathering @ (turned / np.maximum(np.abs(turned), 1e-12))))
         pull[0] += anchor
         flat = solve(pull)
     return flat
 
 
-def _gathered(rows: Indices, values: Floats, count: int) -> Floats:
+def _complex(flat: Floats) -> Numbers:
+    return np.asarray(np.ascontiguousarray(flat).view(np.complex128)[:, 0])
+
+
+def _plane(places: Numbers) -> Floats:
+    return np.asarray(places.view(np.float64).reshape(-1, 2))
+
+
+def _gathered(rows: Indices, values: Numbers, count: int) -> Numbers:
     """Return the sum of ``values`` at each of the ``rows``, (count,)."""
-    return np.bincount(rows.ravel(), values.ravel(), count).astype(np.float64, copy=False)
+    rows, values = rows.ravel(), values.ravel()
+    if np.iscomplexobj(values):
+        return np.asarray(_gathered(rows, values.real, count) + 1j * _gathered(rows, values.imag, count))
+    return np.bincount(rows, values, count).astype(np.float64, copy=False)
 
 
 def _plane_area(flat: Floats, faces: Faces) -> float:

@@ -26,8 +26,8 @@ def walk_planes(mesh: Mesh, start: Points, ways: Points, normals: Points, length
     origin = shares / shares.sum() @ corners[0]
     here, entered = np.full(len(ways), first), np.full(len(ways), -1)
     gone, last = np.zeros(len(ways)), np.repeat(origin[None], len(ways), axis=0)
-    found = [[start] for _ in ways]
     going = np.arange(len(ways))
+    found = [(going, np.repeat(start[None], len(ways), axis=0))]
     for _ in range(_MOST_STEPS):
         if not len(going):
             break
@@ -38,14 +38,15 @@ def walk_planes(mesh: Mesh, start: Points, ways: Points, normals: Points, length
         seen = np.isfinite(value[row, out])
         row, out, going = row[seen], out[seen], going[seen]
         place = places[row, out]
-        for number, at in zip(going.tolist(), place, strict=True):
-            found[number].append(at)
+        found.append((going, place))
         gone[going] += np.linalg.norm(place - last[going], axis=1)
         last[going], entered[going] = place, key[row, out]
         beyond = mesh.face_neighbours[here[going], out]
         here[going] = beyond
         going = going[(beyond >= 0) & (beyond != first) & (gone[going] < length)]
-    return [np.array(places) for places in found]
+    number, whole = (np.concatenate(column) for column in zip(*found, strict=True))
+    ends = np.cumsum(np.bincount(number))[:-1]
+    return np.split(whole[np.argsort(number, kind="stable")], ends)
 
 
 def _sides(mesh: Mesh, faces: Indices, origin: Points, normals: Points) -> tuple[Flags, Points, Indices]:

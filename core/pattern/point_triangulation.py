@@ -47,8 +47,10 @@ def greedy_triangles(shares: Floats, places: Floats, lines: Flags) -> tuple[Indi
 
 def _areas(shares: Floats) -> Floats:
     """Return the signed area of each three points in parts of their triangle, (f, n, n, n) [1]."""
-    across = np.cross(shares[:, :, None], shares[:, None, :])
-    area = np.einsum("fijc,fkc->fijk", across, shares)
+    x, y, z = (shares[:, :, None, axis] for axis in range(3))
+    u, v, w = (shares[:, None, :, axis] for axis in range(3))
+    across = np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=3)
+    area = across @ shares[:, None].transpose(0, 1, 3, 2)
     area[np.abs(area) < _FLAT] = 0.0
     return np.asarray(area)
 

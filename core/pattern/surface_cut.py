@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy import sparse
 
-from core.geometry.mesh import Faces, Flags, Floats, Indices, Mesh, Points
+from core.geometry.mesh import Faces, Flags, Floats, Indices, Mesh, Points, face_neighbours
 from core.pattern.point_triangulation import greedy_triangles
 from core.pattern.surface_trace import MARGIN, SurfaceCurve, Traces, trace_curves
 
@@ -32,6 +33,19 @@ class CutSkin:
     curve: Indices
     chains: tuple[Indices, ...]
 
+    @cached_property
+    def face_neighbours(self) -> Indices:
+        """Return the triangle beyond each side 0-1, 1-2, 2-0 of the faces, -1 if there is none, (m, 3)."""
+        whole = np.flatnonzero((self.faces == self.skin.faces[self.origin]).all(axis=1))
+        number = np.full(len(self.skin.faces), -1)
+        number[self.origin[whole]] = whole
+        beyond, on_skin = np.full(self.faces.shape, -1), self.skin.face_neighbours[self.origin[whole]]
+        beyond[whole] = np.where(on_skin >= 0, number[on_skin], -1)
+        rest = np.flatnonzero((beyond < 0).any(axis=1))  # only these are beside triangles that were cut
+        after = face_neighbours(self.faces[rest])
+        beyond[rest] = np.where(after >= 0, rest[after], beyond[rest])
+        return beyond
+
 
 def cut_surface(mesh: Mesh, curves: tuple[SurfaceCurve, ...], within: Flags | None = None) -> CutSkin:
     """Make ``curves`` on ``mesh`` edges of it; they may cross and end on each other.
@@ -41,42 +55,37 @@ def cut_surface(mesh: Mesh, curves: tuple[SurfaceCurve, ...], within: Flags | No
     """
     points, gaps = _points_and_gaps(mesh, trace_curves(mesh, curves))
     points, gaps = _divided(mesh, points, gaps)
-    faces, origin = _cut_faces(mesh, points, gaps, within)
+    mix = points.mix(len(mesh.vertices))
+    vertices = np.asarray(mix @ mesh.vertices)
+    faces, origin = _cut_faces(mesh, points, vertices, gaps, within)
     low, high = np.minimum(gaps.start, gaps.end), np.maximum(gaps.start, gaps.end)
     key, first = np.unique(low * len(points.corners) + high, return_index=True)
     edges = np.stack([key // len(points.corners), key % len(points.corners)], axis=1)
     breaks = np.flatnonzero(np.diff(gaps.curve)) + 1
     starts, ends = np.split(gaps.start, breaks), np.split(gaps.end, breaks)
     chains = tuple(np.append(start, end[-1]) for start, end in zip(starts, ends, strict=True))
-    mix = points.mix(len(mesh.vertices))
-    return CutSkin(mesh, curves, mix, mix @ mesh.vertices, faces, origin, edges, gaps.curve[first], chains)
+    return CutSkin(mesh, curves, mix, vertices, faces, origin, edges, gaps.curve[first], chains)
 
 
 @dataclass(frozen=True, eq=False)
 class _Vertices:
-    """All vertices as ``shares`` (w, 3) of the vertices ``corners`` (w, 3) of the skin."""
+    """All vertices as ``shares`` (w, 3) of the vertices ``corners`` (w, 3) of the skin, its own first."""
 
     corners: Indices
     shares: Floats
 
     def mix(self, count: int) -> sparse.csr_array:
         """Return the matrix of the shares, (w, count)."""
-        rows = np.repeat(np.arange(len(self.corners)), 3)
-        entries = sparse.coo_array(
-            (self.shares.ravel(), (rows, self.corners.ravel())), (len(self.corners), count)
-        )
-        mix = sparse.csr_array(entries)
-        mix.eliminate_zeros()
-        return mix
+        shares, corners = self.shares[count:], self.corners[count:]
+        rows = np.repeat(np.arange(len(shares)), 3)
+        added = sparse.csr_array((shares.ravel(), (rows, corners.ravel())), (len(shares), count))
+        added.eliminate_zeros()
+        return sparse.csr_array(sparse.vstack([sparse.eye_array(count, format="csr"), added]))
 
     def within(self, faces: Faces, vertices: Indices) -> Floats:
         """Return the shares of the corners of ``faces`` (k, 3) in ``vertices`` (k,) of them, (k, 3) [1]."""
         same = faces[:, :, None] == self.corners[vertices][:, None]
         return np.asarray((same * self.shares[vertices][:, None]).sum(axis=2))
-
-    def places(self, mesh: Mesh) -> Points:
-        """Return where all are, (w, 3) [mm]."""
-        return np.asarray(np.einsum("ij,ijk->ik", self.shares, mesh.vertices[self.corners]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -229,7 +238,9 @@ def _between(mesh: Mesh, points: _Vertices, gaps: _Gaps) -> tuple[Indices, Indic
     return gap_of.astype(np.int64), vertex_of.astype(np.int64), share_of.astype(np.float64)
 
 
-def _cut_faces(mesh: Mesh, points: _Vertices, gaps: _Gaps, within: Flags | None) -> tuple[Faces, Indices]:
+def _cut_faces(
+    mesh: Mesh, points: _Vertices, places: Points, gaps: _Gaps, within: Flags | None
+) -> tuple[Faces, Indices]:
     """Cut the triangles that curves touch; return all, and the triangle of the skin each is of."""
     face = np.concatenate([gaps.face, gaps.face])
     vertex = np.concatenate([gaps.start, gaps.end])
@@ -244,7 +255,6 @@ def _cut_faces(mesh: Mesh, points: _Vertices, gaps: _Gaps, within: Flags | None)
     chord = ~gaps.along
     chords = gaps.face[chord], gaps.start[chord], gaps.end[chord]
     touched, number = np.unique(face, return_counts=True)
-    places = points.places(mesh)
     parts, owners = [], []
     begin = np.cumsum(number) - number
     for count in np.unique(number).tolist():

@@ -122,21 +122,11 @@ def _join_end(
     own: Points, marks: Indices, end: int, points: list[Points], nodes: list[Indices], total: int
 ) -> tuple[Points, Indices, int]:
     """Put one end of a curve on the nearest of the curves before it, or make it a node of its own."""
-    place, best = own[end], (SNAP, -1, 0, 0.0)
-    for curve, line in enumerate(points):
-        step = np.diff(line, axis=0)
-        share = np.einsum("ij,ij->i", place - line[:-1], step)
-        share = np.clip(share / np.maximum((step**2).sum(axis=1), 1e-300), 0.0, 1.0)
-        away = np.linalg.norm(place - line[:-1] - share[:, None] * step, axis=1)
-        at = int(away.argmin())
-        if away[at] < best[0]:
-            best = float(away[at]), curve, at, float(share[at])
-    away_from, curve, at, share_at = best
-    if curve < 0:
+    away_from, curve, at, target = _nearest(own[end], points)
+    if away_from >= SNAP:
         marks[end] = total
         return own, marks, total + 1
     line, mark = points[curve], nodes[curve]
-    target = line[at] + share_at * (line[at + 1] - line[at])
     taken = np.flatnonzero(mark >= 0)
     away = np.linalg.norm(line[taken] - target, axis=1)
     if away.min(initial=np.inf) < SNAP:
@@ -151,6 +141,21 @@ def _join_end(
     own = own.copy()
     own[end], marks[end] = target, number
     return own[keep], marks[keep], total
+
+
+def _nearest(place: Points, lines: list[Points]) -> tuple[float, int, int, Points]:
+    """Return the distance of the nearest place on ``lines``, which line and step it is on, and itself."""
+    if not lines:
+        return np.inf, 0, 0, place
+    whole, ends = np.concatenate(lines), np.cumsum([len(line) for line in lines])
+    start, step = whole[:-1], np.diff(whole, axis=0)
+    share = np.einsum("ij,ij->i", place - start, step)
+    share = np.clip(share / np.maximum((step**2).sum(axis=1), 1e-300), 0.0, 1.0)
+    away = np.linalg.norm(place - start - share[:, None] * step, axis=1)
+    away[ends[:-1] - 1] = np.inf  # from one line to the next
+    at = int(away.argmin())
+    curve = int(np.searchsorted(ends, at, side="right"))
+    return float(away[at]), curve, at - int(ends[curve]) + len(lines[curve]), start[at] + share[at] * step[at]
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,7 @@ import pytest
 import trimesh
 
 from core.errors import LineError
-from core.geometry.geodesic import SurfacePaths, shortest_path, split_pinched_vertices
+from core.geometry.geodesic import SurfacePaths, _with_vertex, shortest_path, split_pinched_vertices
 from core.geometry.mesh import Mesh
 
 Pair = tuple[float, float]
@@ -85,6 +85,15 @@ def test_ways_on_a_ball_and_a_torus_are_arcs() -> None:
     assert length(shortest_path(mesh, start, end)) == pytest.approx(50.0 * 2.55, rel=0.002)
     start, end = between(ring, (-0.21, 0.0), (0.31, 0.0))
     assert length(shortest_path(mesh, start, end)) == pytest.approx(200.0 * 0.52, rel=0.002)
+
+
+def test_a_way_is_that_over_the_whole_skin_though_little_of_it_is_looked_at() -> None:
+    fine = trimesh.creation.icosphere(subdivisions=5, radius=100.0)
+    mesh = Mesh(np.asarray(fine.vertices) * [1.0, 0.6, 1.4], np.asarray(fine.faces))
+    for first, last in np.random.default_rng(1).integers(0, len(mesh.faces), (12, 2)).tolist():
+        start, end = (mesh.vertices[mesh.faces[each]].mean(axis=0) for each in (first, last))
+        whole = SurfacePaths(_with_vertex(_with_vertex(mesh, start), end))
+        np.testing.assert_allclose(shortest_path(mesh, start, end), whole.path(start, end), atol=1e-9)
 
 
 def test_a_skin_whose_holes_meet_at_a_corner_can_be_walked_on() -> None:

@@ -45,6 +45,14 @@ def test_curves_are_edges_in_order():
     assert {tuple(edge) for edge in cut.edges.tolist()} <= known
 
 
+@pytest.mark.parametrize("part", [None, 0.5])
+def test_neighbours_are_those_of_a_mesh_of_its_own(part):
+    skin = ball()
+    within = None if part is None else np.arange(len(skin.faces)) < part * len(skin.faces)
+    cut = cut_surface(skin, CROSSING, within)
+    np.testing.assert_array_equal(cut.face_neighbours, as_mesh(cut).face_neighbours)
+
+
 def test_vertices_keep_their_shares_of_the_skin():
     skin = ball()
     cut = cut_surface(skin, CROSSING)
