@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from whole_trunk import trunk_stages
 
+from core.document.block import without_side
 from core.errors import PatternError
 from core.export.pattern_data import seam_values
 from core.landmarks.types import SIDES
@@ -84,6 +85,18 @@ def test_every_piece_is_within_its_cut_line(built: Built, block: str, sample: st
         low, high = piece.outline.min(axis=0), piece.outline.max(axis=0)
         np.testing.assert_array_less(made.cut.min(axis=0), low - 6.0)
         np.testing.assert_array_less(high + 6.0, made.cut.max(axis=0))
+
+
+@pytest.mark.parametrize(("block", "sample"), cases())
+def test_sides_are_those_of_the_block_alike_on_left_and_right(built: Built, block: str, sample: str) -> None:
+    found = pattern(stages_of(built, sample), block)
+    kinds: dict[str, list[list[tuple[str, bool]]]] = {}
+    for flat in found.flats:
+        for number, side in enumerate(flat.panel.sides):
+            assert flat.side_length(number) > 3.0, f"{flat.panel.name}: {side.name}"
+        kind = sorted((without_side(each.name)[0], each.partner is None) for each in flat.panel.sides)
+        kinds.setdefault(without_side(flat.panel.name)[0], []).append(kind)
+    assert all(one == other for one, *others in kinds.values() for other in others)
 
 
 def test_a_block_without_seams_cuts_nothing(built: Built) -> None:
