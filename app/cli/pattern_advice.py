@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from app.cli.output import table_lines
+from core.document.block import Block
 from core.errors import PatternError
 from core.geometry.mesh import Points
 from core.messages import Message
@@ -15,14 +16,19 @@ from core.pattern.seam_curves import SeamDrawing
 from core.pipeline.build import Stages
 
 
-def dart_lines(pattern: Pattern, stages: Stages, piece: str) -> Iterator[str]:
-    """Yield a table of darts for a piece, named with its side. Raises PatternError where there is none."""
-    names = [panel.name for panel in pattern.garment.panels]
+def check_piece(block: Block, piece: str) -> None:
+    """Raise PatternError for a piece that a block does not have, named with its side."""
+    names = block.panel_names
     if piece not in names:
         raise PatternError(
             Message("There is no piece '{name}'.", name=piece),
             Message("Choose one of: {choices}.", choices=", ".join(names)),
         )
+
+
+def dart_lines(pattern: Pattern, stages: Stages, piece: str) -> Iterator[str]:
+    """Yield a table of darts for a piece, named with its side. Raises PatternError where there is none."""
+    check_piece(pattern.garment.block, piece)
     chart = chart_of(pattern, piece, SeamDrawing(BodyPlaces.of(stages)))
     yield f"Darts of the piece {piece}: {100.0 * chart.within:.1f} % without one."
     rows = [("from", "at %", "clock", "work left %", "strain %")]

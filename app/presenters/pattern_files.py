@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from app.i18n.catalog import tr
-from app.presenters.messages import elastic_title, line_title
+from app.presenters.messages import elastic_title, line_title, render
 from app.rendering.band import band_width
 from core import __version__
 from core.document.garment_pattern import GarmentPattern
@@ -95,9 +95,10 @@ def cut_pattern(
     titles |= {row.elastic: elastic_title(row.elastic) for row in cuts.rows}
     widths = {name: band_width(name, design) for name in names}
     on_edges = lines_on_edges(pattern, cuts)
-    straps = strip_pieces(shown, cuts, on_edges, titles, widths) if strips else ()
-    uncut = uncut_strips(cuts, on_edges) if strips else ()
     pieces, worn = pattern.pieces(plan.allowance, elastics), worn_skin(shown.stages, vertices)
+    taken = {piece.key for piece in pieces}
+    straps = strip_pieces(shown, cuts, on_edges, titles, widths, taken) if strips else ()
+    uncut = uncut_strips(cuts, on_edges) if strips else ()
     return CutPattern(plan, pattern, elastics, pieces, straps, uncut, shown.stages, worn)
 
 
@@ -127,11 +128,15 @@ def write_pattern(path: Path, kind: str, cut: CutPattern, heading: Heading, foun
     Raises UserError where it cannot be written.
     """
     if kind == "json":
-        values = {**pattern_values(cut.pattern, cut.elastics), **found, "versions": {"busk": __version__}}
+        values = {
+            **pattern_values(cut.pattern, cut.pieces, cut.elastics),
+            **found,
+            "versions": {"busk": __version__},
+        }
         write_text(path, json.dumps(values, indent=1, ensure_ascii=False) + "\n")
     elif kind in ("obj", "glb"):
         skin = cut.stages.body.smoothed
-        write_avatar(path, skin.moved(cut.worn), seam_lines(cut.pattern.garment.curves, skin, cut.worn))
+        write_avatar(path, skin.moved(cut.worn), seam_lines(cut.pattern.garment.curves, skin, cut.worn), kind)
     elif kind in ("pieces", "seams"):
         (write_pieces if kind == "pieces" else write_seams)(path, (*cut.pieces, *cut.strips))
     else:
@@ -139,7 +144,7 @@ def write_pattern(path: Path, kind: str, cut: CutPattern, heading: Heading, foun
         if kind.startswith("dxf"):
             write_pattern_dxf(path, layout, heading, kind.removeprefix("dxf-"))
         elif kind == "svg":
-            write_pattern_svg(path, layout, heading)
+            write_pattern_svg(path, layout, heading, render)
         else:
             write_pattern_plt(path, layout)
 

@@ -6,7 +6,9 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
+from core.document.cloth import LONGEST_NAME as LONGEST_CLOTH
 from core.document.document_limits import check_counts
+from core.document.printable_name import LONGEST_NAME as LONGEST_LINE
 from core.document.printable_name import is_blank, is_printable, repeated
 from core.errors import PatternError
 from core.landmarks.types import SIDES
@@ -26,6 +28,11 @@ MOST_SEAMS, MOST_PANELS, MOST_PLACES = 120, 80, 40
 
 LARGEST_ALLOWANCE = 40.0
 """The widest seam allowance [mm]."""
+
+MOST_TURN = 180.0
+"""A grain line is turned by less, either way [degrees]."""
+
+_SPANS = {RING: 1.0, ROOT: 360.0}
 
 
 @dataclass(frozen=True)
@@ -126,17 +133,21 @@ class Block:
         for own in (self.levels, self.seams, self.panels):
             if twice := repeated(each.name for each in own):
                 raise self._refusal(f"the name '{twice}' is used twice")
+            if sided := next((each.name for each in own if without_side(each.name)[1]), ""):
+                raise self._refusal(f"the name '{sided}' ends in a side of the body")
         for level in self.levels:
             if level.reference not in REFERENCES:
                 raise self._refusal(f"the level {level.name} is told from '{level.reference}'")
         for seam in self.seams:
             self._check_seam(seam)
+        for panel in self.panels:
+            self._check_panel(panel)
         if not self.panels:
             raise self._refusal("it has no panel")
 
     def _check_names(self, names: Iterable[str]) -> None:
         for name in names:
-            if is_blank(name) or not is_printable(name, LONGEST_NAME):
+            if not _is_word(name, LONGEST_NAME):
                 raise self._refusal("a name is missing, too long or unprintable")
 
     def _check_seam(self, seam: Seam) -> None:
@@ -152,8 +163,31 @@ class Block:
             raise self._refusal(f"the allowance of the seam {seam.name} is {seam.allowance:g} mm")
         if not all(0.0 < each < 1.0 for each in seam.notches or ()):
             raise self._refusal(f"a notch of the seam {seam.name} is not between its ends")
-        if not all(math.isfinite(each) for each in seam.span):
-            raise self._refusal(f"the span of the seam {seam.name} is not a number")
+        if not all(_is_word(each, LONGEST_PLACE) for each in (*seam.places, *seam.right)):
+            raise self._refusal(f"a place of the seam {seam.name} is missing, too long or unprintable")
+        if not is_printable(seam.line, LONGEST_LINE):
+            raise self._refusal(f"the line of the seam {seam.name} is too long or unprintable")
+        self._check_span(seam)
+
+    def _check_span(self, seam: Seam) -> None:
+        first, last = seam.span
+        most = _SPANS.get(seam.kind, math.inf)
+        if not all(math.isfinite(each) and 0.0 <= each <= most for each in seam.span):
+            raise self._refusal(f"the span of the seam {seam.name} is not from 0 to {most:g}")
+        if seam.kind == RING and first >= last:
+            raise self._refusal(f"the span of the seam {seam.name} ends before it starts")
+        if seam.kind == ROOT and not seam.each:
+            raise self._refusal(f"the seam {seam.name} follows a breast, but is not on each side")
+
+    def _check_panel(self, panel: PanelPlan) -> None:
+        if not _is_word(panel.seed, LONGEST_PLACE):
+            raise self._refusal(f"the seed of the panel {panel.name} is missing, too long or unprintable")
+        if not _is_word(panel.cloth, LONGEST_CLOTH):
+            raise self._refusal(f"the cloth of the panel {panel.name} is missing, too long or unprintable")
+        if not abs(panel.turn) <= MOST_TURN:
+            raise self._refusal(
+                f"the grain line of the panel {panel.name} is turned by {panel.turn:g} degrees"
+            )
 
     def _refusal(self, why: str) -> PatternError:
         name = self.name if is_printable(self.name, LONGEST_NAME) else ""
@@ -183,6 +217,15 @@ class Block:
             "root" in word or "apex" in word for word in own
         )
 
+    @property
+    def panel_names(self) -> tuple[str, ...]:
+        """Return the names of its panels with their sides."""
+        return tuple(
+            f"{panel.name} {side}".rstrip()
+            for panel in self.panels
+            for side in (SIDES if panel.each else ("",))
+        )
+
     def with_seam(self, seam: Seam) -> Block:
         """Return the block with another seam of the same name."""
         return replace(self, seams=tuple(seam if each.name == seam.name else each for each in self.seams))
@@ -201,6 +244,10 @@ class Block:
             if name == seam.name or name in {own for own, _ in seam.named()}:
                 return seam
         raise KeyError(name)
+
+
+def _is_word(text: str, longest: int) -> bool:
+    return not is_blank(text) and is_printable(text, longest)
 
 
 def without_side(name: str) -> tuple[str, str]:

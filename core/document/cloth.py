@@ -10,7 +10,7 @@ from core.errors import PatternError
 from core.messages import ClothName, Message
 
 Pair = tuple[float, float]
-"""Across (the direction of greatest stretch) and down."""
+"""Across (in most cloths the direction of greatest stretch) and down."""
 
 LONGEST_NAME, LONGEST_SOURCE = 80, 500
 """Letters of a name or title, and of where the values of a cloth come from."""
@@ -44,11 +44,9 @@ class Cloth:
     estimate: bool = True
 
     def __post_init__(self) -> None:
-        if any(is_blank(each) or not is_printable(each, LONGEST_NAME) for each in (self.name, self.title)):
-            raise PatternError(
-                Message("A cloth requires a name."),
-                Message("Use at most {count} characters.", count=LONGEST_NAME),
-            )
+        for each in (self.name, self.title):
+            if is_blank(each) or not is_printable(each, LONGEST_NAME):
+                raise self._name_error(each)
         if not is_printable(self.source, LONGEST_SOURCE):
             raise PatternError(
                 Message(
@@ -59,23 +57,44 @@ class Cloth:
             )
         stretches = [(each, (0.0, MOST_STRETCH)) for each in self.stretch or ()]
         for what, values in (
+            (Message("stretch"), stretches),  # first, as other values may be estimated from it
             (Message("stiffness"), [(each, STIFFNESS_LIMITS) for each in self.stiffness]),
             (Message("Poisson's ratio"), [(self.poisson, (0.0, 0.9))]),
             (Message("ease"), [(each, (-0.3, 1.0)) for each in self.ease]),
             (Message("limit"), [(self.limit, (0.001, 2.0))]),
-            (Message("stretch"), stretches),
         ):
             for value, (low, high) in values:
-                if not (math.isfinite(value) and low <= value <= high):
+                if not low <= value <= high:
                     raise self._range_error(what, value, low, high)
 
+    @staticmethod
+    def _name_error(name: str) -> PatternError:
+        hint = Message("Use at most {count} characters.", count=LONGEST_NAME)
+        if not is_blank(name) and len(name) <= LONGEST_NAME:
+            return PatternError(Message("The name of the cloth contains unprintable characters."), hint)
+        return PatternError(
+            Message(
+                "The name of the cloth is missing or longer than {count} characters.", count=LONGEST_NAME
+            ),
+            hint,
+        )
+
+    @property
+    def stretches_down(self) -> bool:
+        """Return whether it gives more down than across; by its stiffness where its stretch is not known."""
+        across, down = self.stretch or (self.stiffness[1], self.stiffness[0])
+        return down > across
+
     def _range_error(self, what: Message, value: float, low: float, high: float) -> PatternError:
+        name = ClothName(self.title)
         return PatternError(
             Message(
                 "The {what} {value} of the cloth {name} is out of range.",
                 what=what,
                 value=f"{value:g}",
-                name=ClothName(self.title),
-            ),
+                name=name,
+            )
+            if math.isfinite(value)
+            else Message("The {what} of the cloth {name} is not a number.", what=what, name=name),
             Message("Enter a value from {low} to {high}.", low=f"{low:g}", high=f"{high:g}"),
         )

@@ -37,24 +37,35 @@ def seam_lines(curves: Iterable[SeamCurve], skin: Mesh, worn: Points) -> dict[st
     return found
 
 
-def write_avatar(path: str | os.PathLike[str], body: Mesh, seams: Mapping[str, Points]) -> None:
-    """Write ``body`` [mm] and ``seams`` by name, (k, 3) [mm], as OBJ or GLB by the suffix, y up.
+def write_avatar(
+    path: str | os.PathLike[str], body: Mesh, seams: Mapping[str, Points], kind: str = ""
+) -> None:
+    """Write ``body`` [mm] and ``seams`` by name, (k, 3) [mm], as OBJ or GLB by ``kind`` or the suffix, y up.
 
     An OBJ is in mm: group ``body`` of triangles, and a group of one line for each seam. A GLB is in m, as
-    the format wants: a mesh and line segments with these names. Raises UserError for another suffix or a path
+    the format wants: a mesh and line segments with these names. Raises UserError for another kind or a path
     that cannot be written.
     """
-    target = Path(path)
-    kind = target.suffix.lower().lstrip(".")
+    kind = kind or avatar_kind(path)
+    check_kind(kind)
+    named = {_name(name): points for name, points in seams.items()}
+    data = _glb(body, named) if kind in GLTF else "\n".join(_obj_lines(body, named)).encode("ascii")
+    with atomic_path(Path(path)) as partial:
+        partial.write_bytes(data)
+
+
+def avatar_kind(path: str | os.PathLike[str]) -> str:
+    """Return the kind of a file by its suffix, in small letters without the dot."""
+    return Path(path).suffix.lower().lstrip(".")
+
+
+def check_kind(kind: str) -> None:
+    """Raise UserError for a kind that is none of AVATAR_FORMATS."""
     if kind not in AVATAR_FORMATS:
         raise UserError(
             Message(".{kind} files are not supported for export.", kind=kind),
             Message("Choose one of: {choices}.", choices=", ".join(AVATAR_FORMATS)),
         )
-    named = {_name(name): points for name, points in seams.items()}
-    data = _glb(body, named) if kind in GLTF else "\n".join(_obj_lines(body, named)).encode("ascii")
-    with atomic_path(target) as partial:
-        partial.write_bytes(data)
 
 
 def _name(name: str) -> str:

@@ -2,38 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from core.document.block import without_side
 from core.messages import Message
 from core.pattern.garment import Pattern
-from core.pattern.piece import NO_ELASTICS, EdgeElastic, SideKey
+from core.pattern.piece import NO_ELASTICS, EdgeElastic, Piece, SideKey
 
 
-def pattern_values(pattern: Pattern, elastics: Mapping[SideKey, EdgeElastic] = NO_ELASTICS) -> dict[str, Any]:
-    """Return block, pieces, seams and elastics of edges, and whether all fit their cloths, ready for JSON."""
+def pattern_values(
+    pattern: Pattern, pieces: Sequence[Piece], elastics: Mapping[SideKey, EdgeElastic] = NO_ELASTICS
+) -> dict[str, Any]:
+    """Return block, ``pieces``, seams and elastics of edges, and whether all fit their cloths, for JSON."""
     return {
         "block": pattern.garment.block.name,
-        "pieces": piece_values(pattern),
+        "pieces": piece_values(pattern, pieces),
         "seams": seam_values(pattern),
         "elastics": elastic_values(pattern, elastics),
         "fits": pattern.fits_cloths,
     }
 
 
-def piece_values(pattern: Pattern) -> list[dict[str, Any]]:
-    """Return what is known of each panel."""
-    values = []
+def piece_values(pattern: Pattern, pieces: Sequence[Piece]) -> list[dict[str, Any]]:
+    """Return what is known of each panel; ``cut_as`` is the piece that is cut for it."""
+    known, values = {piece.key: piece for piece in pieces}, []
     for flat in pattern.flats:
         name, cloth = flat.panel.name, pattern.cloths[flat.panel.cloth]
         plain, side = without_side(name)
+        piece = known.get(name) or known[plain]
         values.append(
             {
                 "name": plain,
                 "side": side,
                 "cloth": cloth.name,
-                "area_mm2": float(flat.areas.sum()),
+                "cut_as": piece.key,
+                "area_mm2": piece.area,
                 "strain_p95_percent": 100.0 * pattern.strains[name].within,
                 "stretch_worn_percent": [100.0 * each for each in pattern.worn_stretch(flat)],
                 "limit_percent": 100.0 * cloth.limit,

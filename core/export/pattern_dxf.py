@@ -7,18 +7,18 @@ R12 entities, an empty header, no tables, ASCII only (ezdxf, discussion 789 and 
 from __future__ import annotations
 
 import re
-import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from core.export.ascii_text import ascii_text
 from core.export.report_data import Heading
 from core.files.atomic_write import write_text
 from core.geometry.mesh import Floats
 from core.pattern.allowance import CutPiece
-from core.pattern.annotation import annotate, piece_words
+from core.pattern.annotation import STRETCH, annotate, english_words
 from core.pattern.layout import Layout
 from core.pattern.piece import BOTH, Piece, Points2
 
@@ -30,9 +30,6 @@ BOUNDARY, TURN, CURVE, NOTCH, GRAIN, INTERNAL, DRILL, SEW, NOTE = 1, 2, 3, 4, 7,
 
 QUALITY = {BOUNDARY: 84, INTERNAL: 85, SEW: 87}
 """Layers on which ASTM wants the same curves again."""
-
-DART = "dart"
-"""The kind of internal lines that end in the point of a dart, which gets a drill hole."""
 
 LONGEST_NAME = 20
 """Letters of a name that every reader takes."""
@@ -83,7 +80,7 @@ def block_names(pieces: Sequence[Piece]) -> list[str]:
     """Return a name for each piece that readers take: capitals without blanks, each another one."""
     names: list[str] = []
     for piece in pieces:
-        plain = re.sub(r"[^A-Z0-9]+", "_", _ascii(piece.key).upper()).strip("_")[:LONGEST_NAME] or "PIECE"
+        plain = re.sub(r"[^A-Z0-9]+", "_", ascii_text(piece.key).upper()).strip("_")[:LONGEST_NAME] or "PIECE"
         name, count = plain, 1
         while name in names:
             count += 1
@@ -104,15 +101,18 @@ def _block(name: str, cut: CutPiece, heading: Heading, standard: str) -> Iterato
     """Yield the block of a piece, whose origin is the lower left corner of its cut line."""
     cut = cut.shifted(-_corner(cut))
     yield from ((0, "BLOCK"), (8, BOUNDARY), (2, name), (70, 0), *_place(np.zeros(2)), (3, name))
-    note = annotate(cut, piece_words(cut.piece, about=(heading.customer, heading.date)))
+    note = annotate(cut, english_words(cut.piece, (heading.customer, heading.date)))
     yield from _texts(_piece_texts(name, cut.piece, standard), note.centre - [0.0, 8.0], BOUNDARY)
-    yield from _texts([_ascii(each) for each in note.lines], note.centre, NOTE)
+    yield from _texts([ascii_text(each) for each in note.lines], note.centre, NOTE)
     yield from _curve(cut.cut, BOUNDARY, standard, closed=True)
     yield from _curve(cut.piece.outline, SEW, standard, closed=True)
-    for kind, points in cut.piece.internal:
+    for _, points in cut.piece.internal:
         yield from _curve(points, INTERNAL, standard, closed=False)
-        if kind == DART:
-            yield from _point(points[-1], DRILL, z=_HOLE)
+    for legs, tip in cut.piece.darts:
+        yield from _curve(legs, INTERNAL, standard, closed=False)
+        yield from _point(tip, DRILL, z=_HOLE)
+    yield from _curve(note.stretch, INTERNAL, standard, closed=False)
+    yield from _texts([str(STRETCH)], note.stretch_word, NOTE)
     for place, inner in cut.notches:
         way = inner - place
         angle = float(np.degrees(np.arctan2(way[1], way[0]))) % 360.0
@@ -126,14 +126,14 @@ def _piece_texts(name: str, piece: Piece, standard: str) -> list[str]:
     half = piece.count // 2
     each_way = (half, piece.count - half) if piece.side == BOTH else (piece.count, 0)
     count = f"{each_way[0]},{each_way[1]}" if standard == "astm" else str(piece.count)
-    values = (name, "M2M", count, _ascii(piece.cloth))
+    values = (name, "M2M", count, ascii_text(piece.cloth))
     return [f"{key}: {value}" for key, value in zip(_WORDS[standard].piece, values, strict=True)]
 
 
 def _style(layout: Layout, heading: Heading, standard: str) -> Iterator[Tag]:
     year, month, day = (*heading.date.split("-"), "", "")[:3]
     date = "-".join(each for each in (day, month, year) if each)
-    values = (_ascii(heading.project)[:LONGEST_NAME] or "STYLE", date, "Busk", "M2M", "", "METRIC")
+    values = (ascii_text(heading.project)[:LONGEST_NAME] or "STYLE", date, "Busk", "M2M", "", "METRIC")
     words = _WORDS[standard]
     texts = [f"{key}: {value}".strip() for key, value in zip(words.style, values, strict=True)]
     yield from _texts([*texts, words.version], np.array([0.0, -layout.height - 20.0]), BOUNDARY)
@@ -187,11 +187,3 @@ def _corner(cut: CutPiece) -> Floats:
 
 def _mm(value: float) -> str:
     return f"{value + 0.0:.4f}"
-
-
-def _ascii(text: str) -> str:
-    """Return a text in ASCII: accents left off, other letters as question marks, on one line."""
-    plain = unicodedata.normalize("NFKD", " ".join(text.split()))
-    return (
-        "".join(each for each in plain if not unicodedata.combining(each)).encode("ascii", "replace").decode()
-    )

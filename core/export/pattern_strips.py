@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from core.document.block import without_side
 from core.errors import LineError
 from core.export.band_geometry import Strip, strips, worn_regions
 from core.garment.cut_list import CutList
@@ -22,10 +23,12 @@ def strip_pieces(
     on_edges: Collection[str],
     titles: Mapping[str, str],
     widths: Mapping[str, float],
+    taken: Collection[str] = (),
 ) -> tuple[Piece, ...]:
     """Return a strip for each row of a cut list that can be cut and is not the elastic of an edge.
 
     ``on_edges`` names the lines of those, ``titles`` are by line and by elastic, ``widths`` [mm] by line.
+    A strip is named after its line, and as a strip where a piece has that name, one of ``taken``.
     Raises LineError for control points that are not a valid shape.
     """
     rows = {row.line: row for row in cuts.rows}
@@ -36,7 +39,8 @@ def strip_pieces(
             continue
         # Of a band over both regions the marks are those of its parts, which do not belong to the whole.
         whole = replace(strip, length=row.cut_mm, marks=()) if row.parts else strip
-        pieces.append(piece_of_strip(whole, titles.get(row.elastic, row.elastic)))
+        name = f"{row.line} strip" if row.line in taken else row.line
+        pieces.append(piece_of_strip(whole, name, row.elastic, titles.get(row.elastic, "")))
     return tuple(pieces)
 
 
@@ -47,8 +51,11 @@ def uncut_strips(cuts: CutList, on_edges: Collection[str]) -> tuple[str, ...]:
     )
 
 
-def piece_of_strip(strip: Strip, elastic: str) -> Piece:
-    """Return a strip as a piece that begins at the left; its length includes its seam allowances."""
+def piece_of_strip(strip: Strip, name: str, elastic: str, elastic_title: str = "") -> Piece:
+    """Return a strip as a piece that begins at the left; its length includes its seam allowances.
+
+    ``name`` and ``elastic`` are the same in every language, the titles are written on it.
+    """
     length, width = strip.length, strip.width
     corners = np.array([[0.0, 0.0], [length, 0.0], [length, width], [0.0, width], [0.0, 0.0]])
     marks = [(at, str(what)) for at, what in strip.marks if _AT_END < at < length - _AT_END]
@@ -59,7 +66,8 @@ def piece_of_strip(strip: Strip, elastic: str) -> Piece:
         for k, name in enumerate(("lower edge", "end", "upper edge", "beginning"))
     )
     across = tuple((what, np.array([[at, 0.0], [at, width]])) for at, what in marks)
-    return Piece(strip.title, "", elastic, 1, sides, across, grain=(1.0, 0.0))
+    titles = strip.title, elastic_title
+    return Piece(*without_side(name), elastic, 1, sides, across, (1.0, 0.0), (1.0, 0.0), *titles)
 
 
 def _strips(shown: ShownState, titles: Mapping[str, str], widths: Mapping[str, float]) -> Iterator[Strip]:

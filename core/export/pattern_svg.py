@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from xml.etree import ElementTree as Xml
 
@@ -14,9 +14,17 @@ from core.export.report_data import Heading
 from core.files.atomic_write import atomic_path
 from core.geometry.mesh import Floats
 from core.pattern.allowance import CutPiece
-from core.pattern.annotation import STRETCH, STRETCH_LETTERS, Say, annotate, arrow_heads, piece_words
+from core.pattern.annotation import (
+    STRETCH,
+    STRETCH_LETTERS,
+    Annotation,
+    Say,
+    annotate,
+    arrow_heads,
+    piece_words,
+)
 from core.pattern.layout import MARGIN, SQUARE, SQUARE_WORDS, Layout
-from core.pattern.piece import Points2
+from core.pattern.piece import Points2, SideKey
 
 STYLE = """
 .cut { fill: none; stroke: #111111; stroke-width: 0.5; stroke-linejoin: miter }
@@ -49,25 +57,36 @@ def write_pattern_svg(path: Path, layout: Layout, heading: Heading, say: Say = s
     Xml.SubElement(root, "style").text = STYLE
     _square(root, layout.square)
     about = (heading.customer, heading.date)
-    for name, each in zip(_ids([piece.piece.key for piece in layout.pieces]), layout.pieces, strict=True):
-        _piece(root, name, each, about, say)
+    names = _ids([each.piece.key for each in layout.pieces])
+    sides = {
+        (each.piece.key, number): ident
+        for name, each in zip(names, layout.pieces, strict=True)
+        for number, ident in enumerate(_ids([f"{name}.{side.name}" for side in each.piece.sides]))
+    }
+    for name, each in zip(names, layout.pieces, strict=True):
+        _piece(root, name, each, sides, annotate(each, piece_words(each.piece, say, about)), say)
     drawing = Xml.ElementTree(root)
     Xml.indent(drawing)
     with atomic_path(path) as partial:
         drawing.write(partial, encoding="utf-8", xml_declaration=True)
 
 
-def _piece(root: Xml.Element, name: str, cut: CutPiece, about: Sequence[str], say: Say) -> None:
-    """Add the group of a piece: cut line, a path a side, lines inside, notches, arrows, words."""
-    piece, note = cut.piece, annotate(cut, piece_words(cut.piece, say, about))
+def _piece(
+    root: Xml.Element, name: str, cut: CutPiece, sides: Mapping[SideKey, str], note: Annotation, say: Say
+) -> None:
+    """Add the group of a piece: cut line, a path a side, lines inside, notches, arrows, words.
+
+    ``sides`` are the identifiers of the sides of all pieces.
+    """
+    piece = cut.piece
     group = Xml.SubElement(root, "g", {"id": name})
     Xml.SubElement(group, "title").text = printable(piece.key)
     _path(group, cut.cut, "cut", f"{name}.cut", closed=True)
-    for side, ident in zip(piece.sides, _ids([f"{name}.{each.name}" for each in piece.sides]), strict=True):
-        drawn = _path(group, side.points, "sew", ident)
+    for number, side in enumerate(piece.sides):
+        drawn = _path(group, side.points, "sew", sides[piece.key, number])
         drawn.set("data-seam", printable(side.name))
-        if side.partner is not None:
-            drawn.set("data-sewn-to", f"{_id(side.partner[0])}.{side.partner[1] + 1}")
+        if side.partner is not None and side.partner in sides:
+            drawn.set("data-sewn-to", sides[side.partner])
     for kind, points in piece.internal:
         _path(group, points, "internal").set("data-kind", printable(kind))
     for points in cut.notches:
@@ -78,9 +97,7 @@ def _piece(root: Xml.Element, name: str, cut: CutPiece, about: Sequence[str], sa
     _path(group, note.stretch, "stretch")
     for head in arrow_heads(note.stretch):
         _path(group, head, "stretch")
-    _text(
-        group, note.stretch.mean(axis=0) + np.array([0.0, 1.0]), say(STRETCH), STRETCH_LETTERS, "stretch-word"
-    )
+    _text(group, note.stretch_word, say(STRETCH), STRETCH_LETTERS, "stretch-word")
     for number, (line, base) in enumerate(zip(note.lines, note.bases, strict=True)):
         _text(group, base, line, note.size, "" if number else "name")
 

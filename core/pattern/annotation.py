@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -51,7 +51,9 @@ class Annotation:
     @property
     def stretch_word(self) -> Floats:
         """Return where the word at the arrow of greatest stretch stands, in its middle, (2,) [mm]."""
-        return np.asarray(self.stretch.mean(axis=0) + np.array([0.0, 1.7]))
+        across, along = np.abs(self.stretch[1] - self.stretch[0])
+        beside = [0.0, 1.7] if across >= along else [6.5, -0.8]  # above the arrow, or to its right
+        return np.asarray(self.stretch.mean(axis=0) + np.array(beside))
 
     @property
     def bases(self) -> Floats:
@@ -67,15 +69,20 @@ def piece_words(piece: Piece, say: Say = str, about: Sequence[str] = ()) -> tupl
     name = PieceName(piece.name)
     alone = Message("{name}", name=name)
     named = Message("{name}, {side}", name=name, side=SideName(piece.side))
-    title = say(alone if piece.side in ("", BOTH) else named)
+    title = piece.title or say(alone if piece.side in ("", BOTH) else named)
     count = (
         Message("cut {count}, mirrored", count=piece.count)
         if piece.side == BOTH
         else Message("cut {count}", count=piece.count)
     )
-    cloth = Message("{cloth}", cloth=ClothName(piece.cloth))
+    cloth = piece.cloth_title or say(Message("{cloth}", cloth=ClothName(piece.cloth)))
     carried = map(say, _elastic_words([each for side in piece.sides if (each := side.elastic)]))
-    return (title[:1].upper() + title[1:], say(cloth), say(count), *carried, *filter(None, about))
+    return (title[:1].upper() + title[1:], cloth, say(count), *carried, *filter(None, about))
+
+
+def english_words(piece: Piece, about: Sequence[str] = ()) -> tuple[str, ...]:
+    """Return the words on a piece for formats without letters of other languages, from keys alone."""
+    return piece_words(replace(piece, title="", cloth_title=""), str, about)
 
 
 def elastic_words(line: str, part: float | None, whole: float | None) -> Message:

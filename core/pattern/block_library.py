@@ -43,11 +43,15 @@ def find_block(name: str) -> Block:
 def block_of(name: str, text: str) -> Block:
     """Return the block that a JSON text describes. Raises PatternError, which says what is wrong in it."""
     try:
-        return value_of(Block, {**parsed(text), "name": name}, "block")
+        values = parsed(text)
+        return value_of(Block, {**values, "name": name} if isinstance(values, dict) else values, "block")
     except PatternError:
         raise
     except UserError as error:
-        raise _refusal(name, error.message) from error
+        raise PatternError(
+            Message("The block {name} cannot be used. {why}", name=name, why=error.message),
+            Message("Correct the file or choose another block."),
+        ) from error
     except (TypeError, ValueError) as error:
         raise _refusal(name, str(error)) from error
 

@@ -151,7 +151,9 @@ def _numbers(
     except ValueError:
         raise PatternError(
             Message(
-                "Row {count} of the table {name} contains a cell that is no number.", count=count, name=name
+                "Row {count} of the table {name} contains a cell that is not a number.",
+                count=count,
+                name=name,
             ),
             HELP,
         ) from None

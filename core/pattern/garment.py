@@ -11,15 +11,18 @@ import numpy as np
 from core.document.block import RING, ROOT, Block, Seam, without_side
 from core.document.cloth import Cloth, Pair
 from core.document.garment_pattern import ALLOWANCE, GarmentPattern
+from core.errors import PatternError
 from core.geometry.mesh import Points
+from core.geometry.plane_sections import arc_length
 from core.landmarks.types import SIDES
 from core.messages import ClothName, Length, Message, PieceName, SeamName
 from core.pattern.bridging import bridged_cut
 from core.pattern.cloth_library import cloths_of
 from core.pattern.flattening import FlatPanel, StrainSummary, strain_summary
+from core.pattern.mirroring import SAME, MirrorPair, merge_mirrored, mirror_pairs
 from core.pattern.notches import notched, seam_share
 from core.pattern.panel import Bridge, Panel, PanelSeed, cut_panels
-from core.pattern.piece import NO_ELASTICS, EdgeElastic, Piece, Side, SideKey, merge_mirrored
+from core.pattern.piece import NO_ELASTICS, EdgeElastic, Piece, Side, SideKey
 from core.pattern.places import BodyPlaces
 from core.pattern.seam_curves import SeamCurve, SeamDrawing
 from core.pattern.seam_matching import Matched, SeamFit, match, seams_of
@@ -53,13 +56,34 @@ class CutGarment:
     def flat(self, vertices: Points, cloths: Mapping[str, Cloth], former: Matched | None = None) -> Pattern:
         """Return the pattern on a skin with these ``vertices`` (n, 3) [mm], from ``cloths`` by their names.
 
-        ``former`` is the match of a pattern before, from which it starts.
+        Left and right panels that are mirror images get sides of the same lengths, so that they can be one
+        piece. ``former`` is the match of a pattern before, from which it starts and of which it takes these.
         """
-        places = [panel.places(vertices) for panel in self.panels]
+        places = tuple(panel.places(vertices) for panel in self.panels)
         own = [cloths[panel.cloth] for panel in self.panels]
-        return Pattern(
-            self, match(self.panels, places, own, seams_of(self.panels), former), tuple(places), cloths
+        seams = seams_of(self.panels)
+
+        def laid(former: Matched | None, mirrors: Sequence[MirrorPair]) -> Pattern:
+            return Pattern(self, match(self.panels, places, own, seams, former, mirrors), places, cloths)
+
+        known = () if former is None else former.mirrors
+        pattern = laid(former, tuple(pair for pair in known if self._is_even(pair, places)))
+        if former is None and pattern.mirrors:
+            pattern = laid(pattern.matched, pattern.mirrors)
+        # Pieces that are not the same after all keep their own lengths.
+        while (same := pattern.kept_mirrors) != pattern.matched.mirrors:
+            pattern = laid(pattern.matched, same)
+        return pattern
+
+    def _is_even(self, pair: MirrorPair, places: Sequence[Points]) -> bool:
+        """Return whether sides of mirrored panels, whose points are at ``places``, may be equally long."""
+        number = {panel.name: at for at, panel in enumerate(self.panels)}
+        left, right = number[pair.left], number[pair.right]
+        lengths = (
+            [arc_length(places[at][self.panels[at].sides[side].points])[-1] for at, side in both]
+            for both in (((left, k), (right, other)) for k, other in enumerate(pair.sides))
         )
+        return all(abs(one - two) < SAME for one, two in lengths)
 
     def seam_of(self, name: str) -> Seam | None:
         """Return the seam of the block of this name, with or without its side; None if there is none."""
@@ -74,6 +98,11 @@ def cut_garment(drawing: SeamDrawing, block: Block, is_bridged: bool = True) -> 
 
     Raises PatternError, LineError for a body that it does not fit.
     """
+    if not block.seams:
+        raise PatternError(
+            Message("The block {name} cannot be used: {why}.", name=block.name, why="it has no seam"),
+            Message("Correct the file or choose another block."),
+        )
     curves = drawing.curves(block)
     cut = cut_surface(drawing.places.skin, surface_curves(curves))
     panels = cut_panels(
@@ -240,6 +269,16 @@ class Pattern:
         return merge_mirrored(notched(sewn, self._own_notches))
 
     @cached_property
+    def mirrors(self) -> tuple[MirrorPair, ...]:
+        """Return the panels of which left and right are the same."""
+        return mirror_pairs([self._piece(flat, 0.0, NO_ELASTICS) for flat in self.flats])
+
+    @property
+    def kept_mirrors(self) -> tuple[MirrorPair, ...]:
+        """Return those panels that were matched with sides of the same lengths and are the same."""
+        return tuple(pair for pair in self.matched.mirrors if pair in self.mirrors)
+
+    @cached_property
     def _own_notches(self) -> Mapping[str, tuple[float, ...]]:
         seams = self.garment.block.seams
         return {seam.name: seam.notches for seam in seams if seam.notches is not None}
@@ -266,4 +305,6 @@ class Pattern:
             notches = elastic.marks if elastic else ()
             kind, points = without_side(own.name)[0], flat.points[own.points]
             sides.append(Side(kind, points, width, notches, own.partner, elastic))
-        return Piece(name, side, self.cloths[panel.cloth].title, 1, tuple(sides))
+        cloth = self.cloths[panel.cloth]
+        stretch = (0.0, 1.0) if cloth.stretches_down else (1.0, 0.0)
+        return Piece(name, side, cloth.title, 1, tuple(sides), stretch=stretch)

@@ -1,16 +1,16 @@
-"""Pieces: what is cut from cloth, flat, by the sides of their outlines; left and right as one where equal."""
+"""Pieces: what is cut from cloth, flat, by the sides of their outlines."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
 
 from core.errors import PatternError
 from core.geometry.mesh import Floats
-from core.geometry.plane_sections import arc_length, interpolate
+from core.geometry.plane_sections import arc_length
 from core.messages import Message
 
 Points2 = Floats
@@ -18,9 +18,6 @@ Points2 = Floats
 
 SideKey = tuple[str, int]
 """A side by the key of its piece and its number in it."""
-
-SAME = 1.0
-"""Left and right are one piece where they differ by less anywhere [mm]."""
 
 BOTH = "both"
 """The side of a piece that is cut for both sides of the body, the right one mirrored."""
@@ -59,9 +56,6 @@ class EdgeElastic:
 NO_ELASTICS: Mapping[SideKey, EdgeElastic] = MappingProxyType({})
 
 _OTHER = {"left": "right", "right": "left"}
-_SAME_GRAIN = float(np.cos(np.radians(3.0)))
-
-_STEP = 1.0  # between places where two outlines are compared [mm]
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,6 +96,7 @@ class Piece:
     ``side`` is "left", "right", ``BOTH`` (cut mirrored) or "" (over the middle of the body). ``sides`` close
     the outline, counter-clockwise. ``internal`` are lines inside by kind (dart legs, control lines), each
     (k, 2) [mm]. ``grain`` and ``stretch`` are the unit directions of the grain line and greatest stretch.
+    ``title`` and ``cloth_title`` are written on it in place of its name and cloth, if there are any.
     """
 
     name: str
@@ -112,6 +107,8 @@ class Piece:
     internal: tuple[tuple[str, Points2], ...] = ()
     grain: tuple[float, float] = (0.0, 1.0)
     stretch: tuple[float, float] = (1.0, 0.0)
+    title: str = ""
+    cloth_title: str = ""
 
     def __post_init__(self) -> None:
         after = (*self.sides[1:], *self.sides[:1])
@@ -133,6 +130,21 @@ class Piece:
     def outline(self) -> Points2:
         """Return the sew line without its first point again, (n, 2) [mm]."""
         return np.concatenate([side.points[:-1] for side in self.sides])
+
+    @property
+    def darts(self) -> tuple[tuple[Points2, Floats], ...]:
+        """Return the legs of each dart, from the outline to its tip and back, (k, 2), and the tip, (2,) [mm].
+
+        A dart is a slit, whose two sides follow each other and are sewn to each other.
+        """
+        after = (*self.sides[1:], *self.sides[:1])
+        return tuple(
+            (np.concatenate([one.points, other.points[1:]]), one.points[-1])
+            for number, (one, other) in enumerate(zip(self.sides, after, strict=True))
+            if one is not other
+            and one.partner == (self.key, (number + 1) % len(self.sides))
+            and other.partner == (self.key, number)
+        )
 
     @property
     def area(self) -> float:
@@ -174,96 +186,6 @@ def mirrored(piece: Piece) -> Piece:
         grain=(-piece.grain[0], piece.grain[1]),
         stretch=(-piece.stretch[0], piece.stretch[1]),
     )
-
-
-@dataclass
-class _Pairing:
-    """Which pieces stand for others, while left and right are compared: sides by their keys."""
-
-    sides: dict[SideKey, SideKey] = field(default_factory=dict)
-    right: set[str] = field(default_factory=set)
-
-
-def merge_mirrored(pieces: Sequence[Piece], same_mm: float = SAME) -> tuple[Piece, ...]:
-    """Return pieces with left and right as one, cut twice and mirrored, where they are the same.
-
-    They are if no place of the mirrored sew line is ``same_mm`` or more from that of the other, side by side,
-    nor a notch, the grain lines differ by less than 3 degrees, and cloth, allowances and number are equal.
-    The left one is kept. Partners refer to what is kept.
-    """
-    known = {each.key: each for each in pieces}
-    pairing = _Pairing()
-    for left in pieces:
-        right = known.get(f"{left.name} right") if left.side == "left" else None
-        turn = None if right is None else _matching_turn(left, mirrored(right), same_mm)
-        if right is not None and turn is not None:
-            count = len(left.sides)
-            for number in range(count):
-                kept = (left.name, number)
-                pairing.sides[left.key, number] = kept
-                pairing.sides[right.key, count - 1 - (number + turn) % count] = kept
-            pairing.right.add(right.key)
-    return tuple(_kept(each, pairing) for each in pieces if each.key not in pairing.right)
-
-
-def _kept(piece: Piece, pairing: _Pairing) -> Piece:
-    """Return a piece whose sides refer to what was kept, for both sides if it stands for both."""
-    sides = tuple(
-        replace(each, partner=pairing.sides.get(each.partner, each.partner) if each.partner else None)
-        for each in piece.sides
-    )
-    if (piece.key, 0) not in pairing.sides:
-        return replace(piece, sides=sides)
-    return replace(piece, side=BOTH, count=2 * piece.count, sides=sides)
-
-
-def _matching_turn(piece: Piece, other: Piece, same_mm: float) -> int | None:
-    """Return by how many sides the outline of another piece is turned where both are the same, else None."""
-    if (piece.cloth, piece.count, len(piece.sides)) != (other.cloth, other.count, len(other.sides)):
-        return None
-    for turn in range(len(other.sides)):
-        turned = replace(other, sides=(*other.sides[turn:], *other.sides[:turn]))
-        alike = all(_like(one, two, same_mm) for one, two in zip(piece.sides, turned.sides, strict=True))
-        if alike and _is_same(piece, turned, same_mm):
-            return turn
-    return None
-
-
-def _like(one: Side, two: Side, same_mm: float) -> bool:
-    """Return whether two sides have one name, allowance and elastic, and notches in the same places."""
-    if _alike(one) != _alike(two):
-        return False
-    return all(
-        abs(a - b) * one.length < same_mm
-        for a, b in zip(sorted(one.notches), sorted(two.notches), strict=True)
-    )
-
-
-def _alike(side: Side) -> tuple[object, ...]:
-    """Return what sides must have in common, beside places."""
-    elastic = side.elastic and (side.elastic.line, side.elastic.elastic)
-    return side.name, side.allowance, len(side.notches), elastic
-
-
-def _is_same(piece: Piece, other: Piece, same_mm: float) -> bool:
-    """Return whether two outlines are the same at equal shares of their sides, laid on each other as well."""
-    pairs = list(zip(piece.sides, other.sides, strict=True))
-    counts = [max(2, round(max(a.length, b.length) / _STEP) + 1) for a, b in pairs]
-    ones, twos = (
-        np.concatenate([_even(side.points, count) for side, count in zip(each.sides, counts, strict=True)])
-        for each in (piece, other)
-    )
-    ones, twos = ones - ones.mean(axis=0), twos - twos.mean(axis=0)
-    u, _, vt = np.linalg.svd(twos.T @ ones)
-    spin = u @ np.diag([1.0, float(np.linalg.det(u @ vt))]) @ vt
-    apart = np.linalg.norm(twos @ spin - ones, axis=1).max()
-    return bool(apart < same_mm and np.array(other.grain) @ spin @ np.array(piece.grain) > _SAME_GRAIN)
-
-
-def _even(points: Points2, count: int) -> Points2:
-    """Return ``count`` places at equal distances along a side."""
-    along = arc_length(points)
-    return interpolate(np.linspace(0.0, along[-1], count), along, points)
 
 
 def sewn_length(pieces: Mapping[str, Piece], side: Side) -> float | None:

@@ -42,6 +42,9 @@ ROOT_WORD = re.compile(rf"root {_NUMBER}(?:\*{_NUMBER})?{_OFF}")
 RING_WORD = re.compile(rf"ring ([\w ]+?) {_NUMBER}{_OFF}")
 CENTRE_WORD = re.compile(rf"(front|back) ([a-z][a-z ]*?){_OFF}")
 CELL_WORD = re.compile(rf"(below )?r{_NUMBER}c{_NUMBER}")
+MOST_SHARE, MOST_OFF = 5.0, 500.0
+"""Places are no further beyond a breast, in distances of its root [1], and no further off [mm]."""
+
 _EDGE = 20.0  # above the edge of a scan its levels are whole [mm]
 _BEARING = np.radians(2.0)  # between places of a ring [rad]
 
@@ -130,10 +133,21 @@ class BodyPlaces:
         """
         text, own, onto = parts_of(word)
         side = own or side
+        if not side and (text == "apex" or ROOT_WORD.fullmatch(text) or RING_WORD.fullmatch(text)):
+            raise PatternError(
+                Message("The place '{word}' requires a side of the body.", word=word),
+                Message("Add left or right to it, or draw the seam or panel on each side."),
+            )
         place = self._place(text, side, levels)
         if place is None:
             raise PatternError(
-                Message("'{word}' is not a place of a seam.", word=word), Message("Correct the block.")
+                Message("'{word}' is not a place of a seam.", word=word),
+                Message(
+                    "Correct the block: clock positions are from 0 to 360, shares of a level from 0 to 1, "
+                    "those of a breast from 0 to {share}, and distances up to {distance} mm.",
+                    share=f"{MOST_SHARE:g}",
+                    distance=f"{MOST_OFF:g}",
+                ),
             )
         return _nearest_on(place, onto, side, drawn) if onto else place
 
@@ -152,12 +166,17 @@ class BodyPlaces:
     def _measured(self, text: str, side: str, levels: Mapping[str, float]) -> Points | None:
         """Return a place on a root or at a level, None for a word that is neither."""
         if match := ROOT_WORD.fullmatch(text):
-            clock, breast = float(match[1]), self.breasts[side]
-            far = float(breast.root_distance(clock)) * float(match[2] or 1.0) + float(match[3] or 0.0)
+            clock, share, off = float(match[1]), float(match[2] or 1.0), float(match[3] or 0.0)
+            if clock > 360.0 or share > MOST_SHARE or abs(off) > MOST_OFF:
+                return None
+            breast = self.breasts[side]
+            far = float(breast.root_distance(clock)) * share + off
             return np.asarray(breast.places(np.array([clock]), np.array([far]))[0])
         if match := RING_WORD.fullmatch(text):
-            z = self.level_height(match[1], levels) + float(match[3] or 0.0)
-            return self.at_share(z, float(match[2]), side)
+            share, off = float(match[2]), float(match[3] or 0.0)
+            if share > 1.0 or abs(off) > MOST_OFF:
+                return None
+            return self.at_share(self.level_height(match[1], levels) + off, share, side)
         if match := CENTRE_WORD.fullmatch(text):
             z = self.level_height(match[2], levels) + float(match[3] or 0.0)
             return self.at_share(z, 0.0 if match[1] == "front" else 1.0, side or "left")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from types import MappingProxyType
@@ -16,6 +16,7 @@ from core.geometry.mesh import Floats, Indices, Points
 from core.mechanics.banded_matrix import Solve
 from core.pattern.cloth_energy import ClothLike
 from core.pattern.flattening import FlatPanel, FlatProblem, HeldSolver
+from core.pattern.mirroring import MirrorPair
 from core.pattern.panel import Panel
 
 NO_RATIOS: Mapping[tuple[str, int], float] = MappingProxyType({})
@@ -80,6 +81,42 @@ def seams_of(
     return tuple(seams)
 
 
+@dataclass(frozen=True, eq=False)
+class _EqualSides:
+    """Two ``sides`` of equal length that are not sewn together, as left and right of a mirrored piece.
+
+    Panels by number, and the points of both sides.
+    """
+
+    panels: tuple[int, int]
+    points: tuple[Indices, Indices]
+
+
+def _equal_sides(
+    panels: Sequence[Panel], seams: Sequence[Seam], mirrors: Sequence[MirrorPair]
+) -> Iterator[_EqualSides]:
+    """Yield the sides of panels that are ``mirrors`` of each other, unless seams make them equal already."""
+    group = {(at, side): (at, side) for at, panel in enumerate(panels) for side in range(len(panel.sides))}
+
+    def first(key: tuple[int, int]) -> tuple[int, int]:
+        while group[key] != key:
+            key = group[key]
+        return key
+
+    for seam in seams:
+        one, other = zip(seam.panels, seam.sides, strict=True)
+        group[first(one)] = first(other)
+    number = {panel.name: at for at, panel in enumerate(panels)}
+    for pair in mirrors:
+        left, right = number[pair.left], number[pair.right]
+        for side, other_side in enumerate(pair.sides):
+            one, other = first((left, side)), first((right, other_side))
+            if one != other:
+                group[one] = other
+                points = panels[left].sides[side].points, panels[right].sides[other_side].points
+                yield _EqualSides((left, right), points)
+
+
 def _stretches(curve: Floats) -> Indices:
     """Divide the steps along ``curve`` (k, 2) into stretches of equal numbers."""
     steps = np.linalg.norm(np.diff(curve, axis=0), axis=1)
@@ -110,10 +147,14 @@ class SeamFit:
 
 @dataclass(frozen=True, eq=False)
 class Matched:
-    """Pieces ``flats`` that can be sewn along ``seams``; ``tensions`` (c,) of all stretches hold them so."""
+    """Pieces ``flats`` that can be sewn along ``seams``, the sides of ``mirrors`` being equally long.
+
+    ``tensions`` (c,) of all stretches, then of those sides, hold them so.
+    """
 
     flats: tuple[FlatPanel, ...]
     seams: tuple[Seam, ...]
+    mirrors: tuple[MirrorPair, ...]
     tensions: Floats
     _problem: FlatProblem
     _misfits: Floats
@@ -122,7 +163,7 @@ class Matched:
     @property
     def off(self) -> float:
         """Return the largest difference of length that is left over a stretch of any seam [mm]."""
-        return float(np.abs(self._misfits).max(initial=0.0))
+        return float(np.abs(self._misfits[: _count(self.seams)]).max(initial=0.0))
 
     @cached_property
     def alone(self) -> tuple[FlatPanel, ...]:
@@ -135,18 +176,24 @@ class Matched:
         """Return how each seam fits."""
         if not self.seams:
             return ()
-        ends = np.cumsum([seam.stretch[-1] + 1 for seam in self.seams])[:-1]
-        parts = zip(self.seams, np.split(self._misfits, ends), np.split(self.tensions, ends), strict=True)
+        ends = np.cumsum([_count([seam]) for seam in self.seams])
+        off, tensions = (np.split(each, ends)[:-1] for each in (self._misfits, self.tensions))
+        parts = zip(self.seams, off, tensions, strict=True)
         fits = []
-        for seam, off, tension in parts:
+        for seam, left_over, tension in parts:
             (a, b), (side, other) = seam.panels, seam.sides
             alone, together = (
                 (pieces[a].side_length(side), pieces[b].side_length(other))
                 for pieces in (self.alone, self.flats)
             )
             largest = float(tension[np.abs(tension).argmax()])
-            fits.append(SeamFit(seam, alone, together, float(np.abs(off).max()), largest))
+            fits.append(SeamFit(seam, alone, together, float(np.abs(left_over).max()), largest))
         return tuple(fits)
+
+
+def _count(seams: Sequence[Seam]) -> int:
+    """Return the number of stretches of ``seams``."""
+    return sum(int(seam.stretch[-1]) + 1 for seam in seams)
 
 
 def _worn(pieces: Sequence[FlatPanel]) -> list[Floats]:
@@ -159,27 +206,33 @@ def match(
     cloths: Sequence[ClothLike],
     seams: Sequence[Seam],
     former: Matched | None = None,
+    mirrors: Sequence[MirrorPair] = (),
 ) -> Matched:
     """Lay ``panels`` whose points are at ``places``, each (p, 3) [mm], flat so that their ``seams`` fit.
 
     The sum of their work is the least at which each stretch of each seam is as long on both sides, after
-    ease. While something is dragged, a ``former`` answer for the same panels and seams saves turns and
-    matrices; the places are then right to about 0.002 mm, good for the eye. What is written is made without.
+    ease, and the sides of ``mirrors`` are of equal lengths. A ``former`` answer for the same panels and seams
+    saves turns, and for the same mirrors matrices: while something is dragged the places are then right to
+    about 0.002 mm, good for the eye. What is written is made without.
     """
     problem = FlatProblem.of(panels, places, cloths)
+    equal = tuple(_equal_sides(panels, seams, mirrors))
+    tensions = np.zeros(_count(seams) + len(equal))
+    system = None
     with one_blas_thread():
-        if former is None or not seams:
+        if former is None or not len(tensions):
             flat = problem.minimum(problem.joined(None if former is None else _worn(former.flats)))
-            tensions = np.zeros(sum(int(seam.stretch[-1]) + 1 for seam in seams))
         else:
-            flat, tensions = problem.joined(_worn(former.flats)), former.tensions
-        off, system = tensions, None
-        if seams:
-            stretches = _Stretches.of(problem, seams)
-            system = None if former is None else former._system
+            flat = problem.joined(_worn(former.flats))
+            known = slice(len(tensions) if former.mirrors == tuple(mirrors) else _count(seams))
+            tensions[known] = former.tensions[known]
+            system = former._system if former.mirrors == tuple(mirrors) else None
+        off = tensions
+        if len(tensions):
+            stretches = _Stretches.of(problem, seams, equal)
             flat, tensions, system = _together(problem, stretches, flat, tensions, system)
             off = stretches.misfits(flat)
-    return Matched(problem.results(flat), tuple(seams), tensions, problem, off, system)
+    return Matched(problem.results(flat), tuple(seams), tuple(mirrors), tensions, problem, off, system)
 
 
 @dataclass(frozen=True, eq=False)
@@ -199,18 +252,21 @@ class _Stretches:
     count: int
 
     @classmethod
-    def of(cls, problem: FlatProblem, seams: Sequence[Seam]) -> _Stretches:
-        """List the steps of ``seams``."""
+    def of(cls, problem: FlatProblem, seams: Sequence[Seam], equal: Sequence[_EqualSides] = ()) -> _Stretches:
+        """List the steps of ``seams``, then those of ``equal`` sides, each of which is one stretch."""
         starts, ends, rows, signs, panels, count = [], [], [], [], [], 0
-        for seam in seams:
-            for panel, points, sign in zip(seam.panels, seam.points, (1.0, -seam.ratio), strict=True):
-                whole = points + problem.points[panel].start
-                starts.append(whole[:-1])
-                ends.append(whole[1:])
-                rows.append(count + seam.stretch)
-                signs.append(np.full(len(seam.stretch), sign))
-                panels.append(np.full(len(seam.stretch), panel))
-            count += int(seam.stretch[-1]) + 1
+        whole = [(each.panels, each.points, np.zeros(0, dtype=np.int64), 1.0) for each in equal]
+        sewn = [(seam.panels, seam.points, seam.stretch, seam.ratio) for seam in seams]
+        for both, sides, stretch, ratio in (*sewn, *whole):
+            for panel, points, sign in zip(both, sides, (1.0, -ratio), strict=True):
+                own = points + problem.points[panel].start
+                steps = len(own) - 1
+                starts.append(own[:-1])
+                ends.append(own[1:])
+                rows.append(count + (stretch if len(stretch) else np.zeros(steps, dtype=np.int64)))
+                signs.append(np.full(steps, sign))
+                panels.append(np.full(steps, panel))
+            count += int(stretch.max(initial=0)) + 1
         panel_of = np.concatenate(panels)
         shrink = 1.0 / (1.0 + np.array([cloth.ease for cloth in problem.cloths]))
         start, end, row = (np.concatenate(each) for each in (starts, ends, rows))

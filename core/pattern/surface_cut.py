@@ -10,7 +10,9 @@ from scipy import sparse
 
 from core.geometry.mesh import Faces, Flags, Floats, Indices, Mesh, Points, face_neighbours
 from core.pattern.point_triangulation import greedy_triangles
-from core.pattern.surface_trace import MARGIN, SurfaceCurve, Traces, trace_curves
+from core.pattern.surface_trace import MARGIN, SNAP, SurfaceCurve, Traces, trace_curves
+
+_FEWEST = 4  # stations of a curve whose ends may be taken together with those beside them
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +84,10 @@ class _Vertices:
         added.eliminate_zeros()
         return sparse.csr_array(sparse.vstack([sparse.eye_array(count, format="csr"), added]))
 
+    def places(self, mesh: Mesh) -> Points:
+        """Return where the vertices are, (w, 3) [mm]."""
+        return np.asarray(np.einsum("wk,wkx->wx", self.shares, mesh.vertices[self.corners]))
+
     def within(self, faces: Faces, vertices: Indices) -> Floats:
         """Return the shares of the corners of ``faces`` (k, 3) in ``vertices`` (k,) of them, (k, 3) [1]."""
         same = faces[:, :, None] == self.corners[vertices][:, None]
@@ -125,8 +131,12 @@ def _points_and_gaps(mesh: Mesh, traces: Traces) -> tuple[_Vertices, _Gaps]:
     corner = np.repeat([[1.0, 0.0, 0.0]], count, axis=0)
     points = _Vertices(corners, np.concatenate([corner, traces.node_shares, edge_shares]))
     ends = np.cumsum([len(trace.low) for trace in traces.curves])
+    shared = _shared_starts(vertex, ends, count, count + nodes, points.places(mesh))
+    for at_node, apart in shared.items():
+        vertex[vertex == at_node] = apart
+    fixed = np.array([*range(count, count + nodes), *shared.values()])
     chains = [
-        _without_spikes(chain, trace.faces, count, count + nodes)
+        _without_spikes(chain, trace.faces, fixed)
         for chain, trace in zip(np.split(vertex, ends[:-1]), traces.curves, strict=True)
     ]
     start, end = (np.concatenate([chain[at] for chain, _ in chains]) for at in (slice(-1), slice(1, None)))
@@ -136,16 +146,36 @@ def _points_and_gaps(mesh: Mesh, traces: Traces) -> tuple[_Vertices, _Gaps]:
     return points, _Gaps(start, end, face, curve, ((there == 0.0) & (back == 0.0)).any(axis=1))
 
 
-def _without_spikes(chain: Indices, faces: Indices, low: int, high: int) -> tuple[Indices, Indices]:
-    """Leave out steps that lead nowhere, and those to a vertex and straight back, but to nodes.
+def _shared_starts(vertex: Indices, ends: Indices, low: int, high: int, places: Points) -> dict[int, int]:
+    """Return for nodes from which curves run together the vertex where they part, which takes their place.
 
-    The vertices of a ``chain`` (s,) from ``low`` up to ``high`` are nodes; ``faces`` (s - 1,) lie between.
+    Curves that leave a node at a small angle cross the first edge of the skin at one vertex. Up to there they
+    would be a side of their own, which no block has. ``vertex`` (s,) are the stations of all curves, which
+    end before ``ends``; those from ``low`` up to ``high`` are nodes.
+    """
+    curve = np.repeat(np.arange(len(ends)), np.diff(ends, prepend=0))
+    step = np.flatnonzero(np.diff(curve) == 0)
+    both = np.concatenate([np.stack([vertex[step], vertex[step + 1]], 1)] * 2)
+    both[len(step) :] = both[len(step) :, ::-1]
+    is_node = (both >= low) & (both < high)
+    from_node = is_node[:, 0] & ~is_node[:, 1] & (np.bincount(curve)[np.tile(curve[step], 2)] > _FEWEST)
+    steps = np.column_stack([both, np.tile(curve[step], 2)])[from_node]
+    pair, times = np.unique(np.unique(steps, axis=0)[:, :2], axis=0, return_counts=True)
+    pair = pair[times > 1]
+    away = np.linalg.norm(places[pair[:, 0]] - places[pair[:, 1]], axis=1)
+    nearest = np.argsort(-away, kind="stable")
+    return {int(pair[at, 0]): int(pair[at, 1]) for at in nearest if away[at] < SNAP}
+
+
+def _without_spikes(chain: Indices, faces: Indices, fixed: Indices) -> tuple[Indices, Indices]:
+    """Leave out steps that lead nowhere, and those to a vertex and straight back, but to those ``fixed``.
+
+    ``chain`` (s,) are vertices, ``faces`` (s - 1,) lie between.
     """
     while True:
         still = np.flatnonzero(chain[1:] == chain[:-1])
         if not len(still):
-            node = (chain[1:-1] >= low) & (chain[1:-1] < high)
-            spike = np.flatnonzero((chain[2:] == chain[:-2]) & ~node)
+            spike = np.flatnonzero((chain[2:] == chain[:-2]) & ~np.isin(chain[1:-1], fixed))
             spike = spike[np.diff(spike, prepend=-3) > 2]
             still = np.concatenate([spike, spike + 1])
         if not len(still) or len(chain) - len(still) < 2:

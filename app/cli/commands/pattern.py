@@ -12,7 +12,7 @@ from pathlib import Path
 from app.cli.design import design_of
 from app.cli.options import add_lines, add_scan
 from app.cli.output import DONE, finish, table_lines
-from app.cli.pattern_advice import dart_lines, fix_lines
+from app.cli.pattern_advice import check_piece, dart_lines, fix_lines
 from app.cli.solved_design import SolvedDesign, solve_design
 from app.presenters.pattern import piece_rows, seam_rows
 from app.presenters.pattern_files import SHEET, CutPattern, cut_pattern, tiling_of, write_pattern
@@ -20,22 +20,28 @@ from core.document.design import Design
 from core.document.garment_pattern import GarmentPattern
 from core.document.lower_trunk import LowerTrunk
 from core.errors import PatternError
+from core.export.avatar import avatar_kind, check_kind
 from core.export.report_data import Heading
 from core.messages import Message
 from core.pattern.annotation import elastic_words
 from core.pattern.block_library import built_in_blocks, find_block, read_block, write_block
-from core.pattern.cloth_csv import read_cloth, write_template
+from core.pattern.cloth_csv import read_cloth, write_cloth, write_template
 from core.pattern.cloth_library import ALL_PIECES, built_in, find_cloth, with_cloth
 from core.pattern.garment import pattern_of, worn_skin
 from core.pattern.layout import PAPERS, Tiling
+from core.pattern.piece import sewn_length
 
 _FILES = ("dxf", "svg", "pdf", "plt", "pieces", "seams", "json", "save_block", "avatar")
+_DRAWN = ("dxf", "svg", "pdf", "plt")
 
 
 def add_options(parser: ArgumentParser) -> None:
     """Add the options of ``busk pattern``."""
     parser.add_argument("--list", action="store_true", help="list blocks and cloths; no scan is read")
-    table = "write a table in which a cloth of your own is entered after a 10 cm test; no scan is read"
+    table = (
+        "write a table in which a cloth of your own is entered after a 10 cm test, or with --cloth NAME the "
+        "table of that cloth; no scan is read"
+    )
     parser.add_argument("--save-cloth", metavar="FILE", help=table)
     add_scan(parser, required=False)
     add_lines(parser)
@@ -78,25 +84,58 @@ def run(options: Namespace) -> int:
         print("\n".join(_listed()))
         return DONE
     if options.save_cloth:
-        write_template(Path(options.save_cloth))
-        print(f"written to {options.save_cloth}")
-        return DONE
+        return _save_cloth(options)
     if not options.input:
         raise _missing()
     design = design_of(options)
     plan = _plan(options, design)
+    _check(options, plan)
     if plan.block.needs_lower_trunk:
         design = replace(design, lower=design.lower or LowerTrunk())
     solved = solve_design(design, options.line or [], options.elastic or [], bare=True)
     shown = solved.solution
     pattern = pattern_of(shown.stages, shown.body.vertices, plan)
     cut = cut_pattern(pattern, plan, shown, shown.body.vertices, strips=options.strips)
-    lines = [*solved.verdict, "", *_text(cut), *_write(cut, solved, options)]
+    advice: list[str] = []  # before files are written, as it may fail
     if options.dart_chart:
-        lines += ["", *dart_lines(pattern, shown.stages, options.dart_chart)]
+        advice += ["", *dart_lines(pattern, shown.stages, options.dart_chart)]
     if options.fixes:
-        lines += ["", *fix_lines(pattern, shown.stages, worn_skin(shown.stages, shown.body.vertices))]
+        advice += ["", *fix_lines(pattern, shown.stages, worn_skin(shown.stages, shown.body.vertices))]
+    lines = [*solved.verdict, "", *_text(cut), *_write(cut, solved, options), *advice]
     return finish("\n".join(lines), solved.converged and cut.pattern.fits_cloths, solved.warnings)
+
+
+def _save_cloth(options: Namespace) -> int:
+    """Write the table of a cloth, or one to be filled in."""
+    path, wanted = Path(options.save_cloth), options.cloth or []
+    if len(wanted) > 1:
+        raise PatternError(
+            Message("One table holds one cloth."), Message("Enter --cloth once with --save-cloth.")
+        )
+    if wanted:
+        plan = design_of(options).pattern if options.input else None
+        write_cloth(path, find_cloth(wanted[0].rpartition("=")[2].strip(), plan.cloths if plan else ()))
+    else:
+        write_template(path)
+    print(f"written to {path}")
+    return DONE
+
+
+def _check(options: Namespace, plan: GarmentPattern) -> None:
+    """Raise PatternError for what would fail only after the design is solved and files are written."""
+    if options.dart_chart:
+        check_piece(plan.block, options.dart_chart)
+    if options.avatar:
+        check_kind(avatar_kind(options.avatar))
+    taken = {Path(options.input).resolve()}
+    for name in filter(None, (getattr(options, kind) for kind in _FILES)):
+        path = Path(name).resolve()
+        if path in taken:
+            raise PatternError(
+                Message("The file {name} is used twice.", name=path.name),
+                Message("Enter another name for each file."),
+            )
+        taken.add(path)
 
 
 def _missing() -> PatternError:
@@ -145,8 +184,11 @@ def _text(cut: CutPattern) -> Iterator[str]:
     yield from table_lines(rows)
     yield from (f"{each.title}: {said}" for each in pieces for said in (each.reason, each.note) if said)
     yield from dict.fromkeys(f"{each.title}: {each.note}" for each in seams if each.note)
-    worst = max((abs(each.lengths_mm[0] - each.lengths_mm[1]) for each in seams), default=0.0)
-    yield f"Seams agree within {worst:.2f} mm. Strain: of the worn piece beyond its ease, on 95 % of it."
+    known = {piece.key: piece for piece in cut.pieces}
+    sewn = [(side.length, sewn_length(known, side)) for piece in cut.pieces for side in piece.sides]
+    worst = max((abs(own - other) for own, other in sewn if other is not None), default=0.0)
+    yield f"Seam lengths match within {worst:.2f} mm."
+    yield "Strain: worn cloth beyond its ease, on 95 % of the area."
     if not pattern.fits_cloths:
         yield "Add a seam or a dart, or choose a cloth that stretches further."
     yield from _elastics(cut)
@@ -158,8 +200,8 @@ def _elastics(cut: CutPattern) -> Iterator[str]:
         flat = next(flat for flat in cut.pattern.flats if flat.panel.name == piece)
         words = elastic_words(each.line, each.part_mm, each.cut_mm)
         yield f"{piece}, {flat.panel.sides[number].name}: {words}"
-    yield from (f"Strip: {each.name}, {each.cloth}" for each in cut.strips)
-    yield from (f"No strip of {name}: busk cut says why." for name in cut.uncut)
+    yield from (f"Strip: {each.title}, {each.cloth_title}" for each in cut.strips)
+    yield from (f"No strip for {name}. Run busk cut for the reason." for name in cut.uncut)
 
 
 def _write(cut: CutPattern, solved: SolvedDesign, options: Namespace) -> Iterator[str]:
@@ -168,13 +210,15 @@ def _write(cut: CutPattern, solved: SolvedDesign, options: Namespace) -> Iterato
     design = solved.solution.stages.design
     heading = Heading(Path(options.input).stem, date.today().isoformat(), design.customer)
     found = {"assessment": solved.assessment.as_data()}
+    if not asked.keys().isdisjoint(_DRAWN):
+        _ = cut.shapes  # raises PatternError before any file is written
     for kind, path in asked.items():
         if kind == "pdf":
             _write_pdf(path, tiling_of(cut, options.paper), heading)
         elif kind == "save_block":
             write_block(path, cut.plan.block)
         elif kind == "avatar":
-            write_pattern(path, "obj", cut, heading, found)  # or GLB, by its suffix
+            write_pattern(path, avatar_kind(path), cut, heading, found)
         else:
             write_pattern(path, f"dxf-{options.dxf_standard}" if kind == "dxf" else kind, cut, heading, found)
         yield f"written to {path}"

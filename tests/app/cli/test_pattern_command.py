@@ -16,7 +16,7 @@ from core.document.document import Document
 from core.document.garment_pattern import GarmentPattern
 from core.document.storage.project_file import read_scan_file, save_project
 from core.pattern.block_library import find_block, read_block
-from core.pattern.cloth_csv import TEMPLATE
+from core.pattern.cloth_csv import TEMPLATE, read_cloth
 from core.pattern.cloth_library import find_cloth, with_cloth
 
 STANDING = ("--unit", "mm", "--up", "+z", "--front=-y")
@@ -66,10 +66,14 @@ def test_a_piece_that_does_not_fit_its_cloth_is_told_and_written(
     plan = with_cloth(GarmentPattern(find_block("one-part-cup"), allowance=9.0), "cup", stiff)
     design = Design(ScanSource(PERSON[0], unit="mm", up="+z", front="-y"), pattern=plan)
     save_project(project, Document.single(design), read_scan_file(design.scan), b"")
-    assert main(["pattern", str(project), "--svg", str(out), "--seams", str(tmp_path / "seams")]) == 3
+    files = ["--svg", str(out), "--seams", str(tmp_path / "seams"), "--json", str(tmp_path / "cup.json")]
+    assert main(["pattern", str(project), *files]) == 3
     told = capsys.readouterr().out
     assert "Cup, left: Strain of " in told
-    assert "Her foam takes up 4 %." in told
+    values = json.loads((tmp_path / "cup.json").read_text("utf-8"))
+    assert not values["fits"]
+    assert {piece["limit_percent"] for piece in values["pieces"]} == {4.0}
+    assert all(piece["strain_p95_percent"] > 4.0 and piece["reason"] for piece in values["pieces"])
     assert ",9," in (tmp_path / "seams").read_text("utf-8-sig"), "the allowance of the project"
     assert out.exists()
 
@@ -81,7 +85,12 @@ def test_what_cannot_be_cut_is_refused_with_the_reason(
     assert "two-part-cup" in capsys.readouterr().out
     assert main(["pattern", "--save-cloth", str(tmp_path / "mine.csv")]) == 0
     assert (tmp_path / "mine.csv").read_text("utf-8-sig") == TEMPLATE
+    save = ["pattern", "--save-cloth", str(tmp_path / "net.csv")]
+    assert main([*save, "--cloth", "power net"]) == 0
+    assert read_cloth(tmp_path / "net.csv") == find_cloth("power net")
+    capsys.readouterr()
     (tmp_path / "broken.json").write_text("{}", "utf-8")
+    same, first = str(tmp_path / "same.csv"), ["--json", str(tmp_path / "first.json")]
     cup = ["--block", "two-part-cup"]
     for words, why in (
         (["pattern", *PERSON], "block are required"),
@@ -93,6 +102,11 @@ def test_what_cannot_be_cut_is_refused_with_the_reason(
         (["pattern", *PERSON, *cup, "--cloth", "hat=power net"], "There is no piece 'hat'"),
         (["pattern", *PERSON, *cup, "--cloth", "wing=tin"], "No cloth matches 'tin'"),
         (["pattern", *PERSON, *cup, "--cloth", f"wing={tmp_path / 'mine.csv'}"], "not specify the stretch"),
+        (["pattern", *PERSON, *cup, *first, "--dart-chart", "cup"], "There is no piece 'cup'"),
+        (["pattern", *PERSON, *cup, *first, "--avatar", str(tmp_path / "a.stl")], ".stl files"),
+        (["pattern", *PERSON, *cup, "--pieces", same, "--seams", same], "same.csv is used twice"),
+        ([*save, "--cloth", "power net", "--cloth", "stretch lace"], "one cloth"),
     ):
         assert main(words) == 2
         assert why in capsys.readouterr().err
+    assert {path.name for path in tmp_path.iterdir()} == {"mine.csv", "net.csv", "broken.json"}

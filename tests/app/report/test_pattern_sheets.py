@@ -20,7 +20,7 @@ from app.report.pdf_file import write_pdf
 from core.export.report_data import Heading
 from core.pattern.allowance import CutPiece, cut_piece
 from core.pattern.layout import MARGIN, PAPERS, SQUARE, Tiling, lay_out_on_tiles, whole_sheet
-from core.pattern.piece import merge_mirrored
+from core.pattern.mirroring import merge_mirrored
 
 HEADING = Heading("Two-part cup bra", "2026-11-26", "Customer 0412", "A")
 

@@ -23,10 +23,10 @@ STRIP = Strip(
 
 
 def test_a_strip_is_a_rectangle_without_allowance_with_its_marks() -> None:
-    piece = piece_of_strip(STRIP, "picot")
+    piece = piece_of_strip(STRIP, "mid-bust", "picot")
     cut = cut_piece(piece)
     assert shapely.Polygon(cut.cut).symmetric_difference(shapely.box(0, 0, 700, 8)).area < 1e-6
-    assert (piece.name, piece.cloth, piece.count) == ("Mid-bust", "picot", 1)
+    assert (piece.name, piece.cloth, piece.count) == ("mid-bust", "picot", 1)
     assert [what for what, _ in piece.internal] == ["seam allowance", "centre front"]
     assert sorted(cut.notches[:, 0, 0]) == pytest.approx([10.0, 10.0, 350.0, 350.0])
     assert set(np.round(cut.notches[:, 0, 1], 6)) == {0.0, 8.0}, "on both edges"
@@ -34,7 +34,7 @@ def test_a_strip_is_a_rectangle_without_allowance_with_its_marks() -> None:
 
 @pytest.mark.parametrize("width", [6.0, 8.0, 12.0, 25.0])
 def test_its_words_are_in_one_row_inside_it(width: float) -> None:
-    cut = cut_piece(piece_of_strip(Strip("a", "Mid-bust", 700.0, width), "picot 8 mm"))
+    cut = cut_piece(piece_of_strip(Strip("a", "Mid-bust", 700.0, width), "a", "picot 8 mm"))
     note = annotate(cut, piece_words(cut.piece, about=("Anna",)))
     rows = ("Mid-bust", "picot 8 mm", "cut 1", "Anna")
     assert note.lines == (rows if width > 20.0 else (" · ".join(rows),))

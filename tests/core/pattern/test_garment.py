@@ -10,11 +10,16 @@ import numpy as np
 import pytest
 from whole_trunk import trunk_stages
 
+from core.document.block import without_side
+from core.errors import PatternError
+from core.export.pattern_data import seam_values
+from core.landmarks.types import SIDES
 from core.pattern.allowance import cut_piece
 from core.pattern.block_library import built_in_blocks, find_block
 from core.pattern.cloth_library import built_in
 from core.pattern.garment import CutGarment, Pattern, cut_garment
-from core.pattern.piece import SAME
+from core.pattern.mirroring import SAME, mirror_pairs
+from core.pattern.piece import BOTH
 from core.pattern.places import BodyPlaces
 from core.pattern.seam_curves import SeamDrawing
 from core.pattern.seam_matching import _System
@@ -80,6 +85,50 @@ def test_every_piece_is_within_its_cut_line(built: Built, block: str, sample: st
         low, high = piece.outline.min(axis=0), piece.outline.max(axis=0)
         np.testing.assert_array_less(made.cut.min(axis=0), low - 6.0)
         np.testing.assert_array_less(high + 6.0, made.cut.max(axis=0))
+
+
+@pytest.mark.parametrize(("block", "sample"), cases())
+def test_sides_are_those_of_the_block_alike_on_left_and_right(built: Built, block: str, sample: str) -> None:
+    found = pattern(stages_of(built, sample), block)
+    kinds: dict[str, list[list[tuple[str, bool]]]] = {}
+    for flat in found.flats:
+        for number, side in enumerate(flat.panel.sides):
+            assert flat.side_length(number) > 3.0, f"{flat.panel.name}: {side.name}"
+        kind = sorted((without_side(each.name)[0], each.partner is None) for each in flat.panel.sides)
+        kinds.setdefault(without_side(flat.panel.name)[0], []).append(kind)
+    assert all(one == other for one, *others in kinds.values() for other in others)
+
+
+def test_a_block_without_seams_cuts_nothing(built: Built) -> None:
+    with pytest.raises(PatternError):
+        cut_garment(drawing(built("mannequin")), replace(find_block("long-line-band"), seams=()))
+
+
+@pytest.mark.parametrize(("block", "sample"), cases())
+def test_pieces_that_are_written_can_be_sewn(built: Built, block: str, sample: str) -> None:
+    found = pattern(stages_of(built, sample), block)
+    pieces = {piece.key: piece for piece in found.pieces()}
+    assert not mirror_pairs(tuple(pieces.values())), "left and right are one piece where they are the same"
+    for piece in pieces.values():
+        for number, side in enumerate(piece.sides):
+            if side.partner is None:
+                continue
+            other = pieces[side.partner[0]].sides[side.partner[1]]
+            assert side.length == pytest.approx(other.length, abs=0.05), f"{piece.key}: {side.name}"
+            is_back = other.partner == (piece.key, number) and other is not side
+            shares = [1.0 - share for share in reversed(other.notches)] if is_back else other.notches
+            for own, theirs in zip(side.notches, shares, strict=True):
+                assert own * side.length == pytest.approx(theirs * other.length, abs=0.1)
+
+
+def test_pieces_that_differ_by_less_than_a_millimetre_are_one_and_sewn_to_others(built: Built) -> None:
+    found = pattern(trunk_stages(), "three-part-cup")
+    kinds = {piece.name: piece.side for piece in found.pieces()}
+    assert kinds["upper cup"] == kinds["wing"] == BOTH
+    assert kinds["side panel"] != BOTH, "which is sewn to the upper cup"
+    values = {(*seam["pieces"], seam["name"]): seam["lengths_mm"] for seam in seam_values(found)}
+    lengths = [values["upper cup " + side, "side panel " + side, "side panel seam " + side] for side in SIDES]
+    assert np.ptp(lengths) < 0.05
 
 
 def test_a_cup_in_one_piece_is_more_than_its_cloth_takes_up(built: Built) -> None:

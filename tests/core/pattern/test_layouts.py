@@ -23,7 +23,8 @@ from core.pattern.layout import (
     lay_out_on_tiles,
     whole_sheet,
 )
-from core.pattern.piece import Piece, Side, merge_mirrored
+from core.pattern.mirroring import merge_mirrored
+from core.pattern.piece import Piece, Side
 
 WORDS = ("Lower cup, left", "Cup tricot, stable", "cut 1", "Customer 0412", "2026-11-26")
 

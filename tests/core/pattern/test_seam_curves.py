@@ -144,9 +144,20 @@ def test_left_and_right_of_a_symmetric_body_mirror_each_other(built: Built) -> N
 
 def test_what_a_body_or_a_block_cannot_give_is_refused_with_the_reason(built: Built) -> None:
     places = drawing(built("person")).places
-    for word, why in (("root", "not a place"), ("somewhere 3", "not a place"), ("point hip", "not a place")):
-        with pytest.raises(PatternError, match=why):
+    for word in (
+        "root",
+        "somewhere 3",
+        "point hip",
+        "root 400",
+        "root 180*99",
+        "root 0+9999",
+        "ring under 99",
+    ):
+        with pytest.raises(PatternError, match="not a place"):
             places.place(word, "left", {}, {})
+    for word in ("apex", "root 180", "ring under 0.5"):
+        with pytest.raises(PatternError, match="side"):
+            places.place(word, "", {}, {})
     with pytest.raises(PatternError, match="'hip'"):
         places.place("front hip", "left", {}, {})
     with pytest.raises(PatternError, match="not drawn yet"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -45,9 +46,9 @@ def test_strain_beyond_its_cloth_names_both_figures(bra: Pattern) -> None:
     lower = next(flat for flat in bra.flats if flat.panel.name == "lower cup left")
     found = replace(bra, cloths={**bra.cloths, lower.panel.cloth: stiff})
     within = 100.0 * bra.strains["lower cup left"].within
-    assert str(found.problem(lower)) == (
-        f"Strain of {within:.1f} % on 95 % of the area; Stiff lining takes up 2 %."
-    )
+    text = str(found.problem(lower))
+    assert {f"{within:.1f} %", "2 %"} <= set(re.findall(r"[\d.]+ %", text))
+    assert "Stiff lining" in text
     assert not found.fits_cloths
 
 
