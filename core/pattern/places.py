@@ -32,7 +32,7 @@ from core.geometry.plane_sections import arc_length, interpolate
 from core.landmarks.lower_trunk.types import LowerLandmarks
 from core.landmarks.torso.cross_sections import Level, trunk_levels
 from core.landmarks.types import SIDES, Landmarks
-from core.messages import Message
+from core.messages import Length, Message
 from core.pattern.breast_map import BreastMap, breast_map
 from core.pipeline.build import Stages
 
@@ -144,9 +144,9 @@ class BodyPlaces:
                 Message("'{word}' is not a place of a seam.", word=word),
                 Message(
                     "Correct the block: clock positions are from 0 to 360, shares of a level from 0 to 1, "
-                    "those of a breast from 0 to {share}, and distances up to {distance} mm.",
+                    "those of a breast from 0 to {share}, and distances up to {distance}.",
                     share=f"{MOST_SHARE:g}",
-                    distance=f"{MOST_OFF:g}",
+                    distance=Length(MOST_OFF, 0),
                 ),
             )
         return _nearest_on(place, onto, side, drawn) if onto else place
