@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -54,6 +55,17 @@ class DrawingBase(QObject):
         context.session.frame_ready.connect(self._follow)
         viewport.view_changed.connect(self._look)
         context.session.design_changed.connect(self._check)
+
+    def connect_tool(
+        self, keep: Callable[[], object], back: Callable[[], object], leave: Callable[[], object]
+    ) -> None:
+        """Connect keys and buttons: ``keep`` what is drawn, one step ``back``, ``leave`` without changes."""
+        requests = {"keep": keep, "back": back, "leave": leave}
+        self.hand.requested.connect(lambda request: requests[request]())
+        self.card.accepted.connect(keep)
+        self.card.back.connect(back)
+        for signal in (self.card.closed, self.lost, self._context.navigation.tool_started):
+            signal.connect(leave)
 
     @property
     def at_work(self) -> bool:

@@ -271,7 +271,7 @@ class Pattern:
     @cached_property
     def mirrors(self) -> tuple[MirrorPair, ...]:
         """Return the panels of which left and right are the same."""
-        return mirror_pairs([self._piece(flat, 0.0, NO_ELASTICS) for flat in self.flats])
+        return mirror_pairs(self._bare)
 
     @property
     def kept_mirrors(self) -> tuple[MirrorPair, ...]:
@@ -286,13 +286,18 @@ class Pattern:
     @cached_property
     def notches(self) -> Mapping[SideKey, tuple[float, ...]]:
         """Return the notches of sides that are sewn, as shares of their lengths, by panel and number."""
-        pieces = notched([self._piece(flat, 0.0, NO_ELASTICS) for flat in self.flats], self._own_notches)
+        pieces = notched(self._bare, self._own_notches)
         return {(piece.key, at): side.notches for piece in pieces for at, side in enumerate(piece.sides)}
 
     def notch_share(self, seam: SewnSeam, share: float) -> float:
         """Return what a block keeps of a notch of a seam at a share of its first side [1]."""
         key = self.flats[seam.panels[0]].panel.name, seam.sides[0]
-        return seam_share([self._piece(flat, 0.0, NO_ELASTICS) for flat in self.flats], key, share)
+        return seam_share(self._bare, key, share)
+
+    @cached_property
+    def _bare(self) -> tuple[Piece, ...]:
+        """Return the pieces one by one, without allowance, elastics and notches."""
+        return tuple(self._piece(flat, 0.0, NO_ELASTICS) for flat in self.flats)
 
     def _piece(self, flat: FlatPanel, allowance: float, elastics: Mapping[SideKey, EdgeElastic]) -> Piece:
         panel = flat.panel

@@ -118,14 +118,17 @@ def word_at(places: BodyPlaces, side: str, target: Points) -> str:
     has a side of its own. Raises PatternError for a body without breasts where there is no control mesh.
     """
     own = side or ("left" if target[0] > places.middle else "right")
-    words = [_cell(places, region, own, target) for region in places.meshes]
+
+    def off(word: str) -> float:
+        return float(np.linalg.norm(places.place(word, own, {}, {}) - target))
+
+    word = min((_cell(places, region, own, target) for region in places.meshes), key=off)
     if f"bust_point_{own}" in places.landmarks.points:
         breast = places.breasts[own]
         clock, far = breast.locate(target)
-        if far < _BREAST * float(breast.root_distance(clock)):
-            words.append(_on_root(places, own, target, share=True, off=None))
-    away = [float(np.linalg.norm(places.place(word, own, {}, {}) - target)) for word in words]
-    word = words[-1] if away[-1] < OFF else words[int(np.argmin(away))]
+        root = _on_root(places, own, target, share=True, off=None)
+        if far < _BREAST * float(breast.root_distance(clock)) and off(root) < OFF:
+            word = root
     return word if side else f"{word} {own}"
 
 
@@ -146,6 +149,8 @@ def moved_span(
         value = float(round(places.breasts[side].locate(target)[0]) % 360)
     else:
         value = share_at(places, levels[seam.level], side, target)
+        start, stop = seam.span  # the end that is dragged stops short of the other one
+        value = min(value, stop - SHARE) if end == 0 else max(value, start + SHARE)
     return (value, seam.span[1]) if end == 0 else (seam.span[0], value)
 
 

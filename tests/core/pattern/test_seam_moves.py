@@ -57,6 +57,13 @@ def test_a_handle_goes_where_it_is_dragged(
     assert abs(found[2] - wished[2]) < 3.5
 
 
+def test_an_end_of_a_ring_stops_short_of_the_other_one(built: Built) -> None:
+    made = drawing(built("mannequin"))
+    band = next(each for each in made.curves(BLOCK) if each.name == "band edge left")
+    moved = moved_block(made, BLOCK, "band edge left", 0, band.points[-1]).seam("band edge")
+    assert moved.span[0] < moved.span[1] == BLOCK.seam("band edge").span[1]
+
+
 def test_both_sides_are_moved_unless_each_has_its_own(built: Built) -> None:
     made = drawing(built("mannequin"))
     place = handles(made, BLOCK, "cup seam right")[1] + [0.0, 0.0, -8.0]

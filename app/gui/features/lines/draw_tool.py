@@ -57,16 +57,9 @@ class LineDrawTool(QObject):
         hand, card = self._sketching.hand, self._card
         hand.clicked.connect(self._click)
         hand.hovered.connect(self._hover)
-        hand.requested.connect(
-            lambda what: {"keep": self.go_on, "back": self.back, "leave": self.leave}[what]()
-        )
-        card.accepted.connect(self.go_on)
-        card.back.connect(self.back)
-        card.closed.connect(self.leave)
+        self._sketching.connect_tool(self.go_on, self.back, self.leave)
         card.moved.connect(self._move)
         card.snap.toggled.connect(self._choose)
-        self._sketching.lost.connect(self.leave)
-        context.navigation.tool_started.connect(self.leave)
 
     @property
     def at_work(self) -> bool:

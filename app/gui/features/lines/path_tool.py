@@ -42,19 +42,12 @@ class LinePathTool(QObject):
         self._line: CustomLine | None = None
         self._steps: list[tuple[int, ...]] = []
         self._held, self._mesh_shown = -1, False
-        hand, card = self._sketching.hand, self._sketching.card
+        hand = self._sketching.hand
         hand.grabs = self._grab
         hand.clicked.connect(self._click)
         hand.dragged.connect(lambda at: self._drag(at, keep=False))
         hand.dropped.connect(lambda at: self._drag(at, keep=True))
-        hand.requested.connect(
-            lambda what: {"keep": self.keep, "back": self.back, "leave": self.leave}[what]()
-        )
-        card.accepted.connect(self.keep)
-        card.back.connect(self.back)
-        card.closed.connect(self.leave)
-        self._sketching.lost.connect(self.leave)
-        context.navigation.tool_started.connect(self.leave)
+        self._sketching.connect_tool(self.keep, self.back, self.leave)
         context.session.design_changed.connect(self._check)
 
     @property

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
@@ -31,16 +32,8 @@ class SeamDrawTool(QObject):
         self._places: list[Points] = []
         self._curve: list[Points] = []
         self._job: Job | None = None
-        hand, card = self._sketching.hand, self._sketching.card
-        hand.clicked.connect(self._click)
-        hand.requested.connect(
-            lambda request: {"keep": self.finish, "back": self.back, "leave": self.leave}[request]()
-        )
-        card.accepted.connect(self.finish)
-        card.back.connect(self.back)
-        card.closed.connect(self.leave)
-        self._sketching.lost.connect(self.leave)
-        context.navigation.tool_started.connect(self.leave)
+        self._sketching.hand.clicked.connect(self._click)
+        self._sketching.connect_tool(self.finish, self.back, self.leave)
         controller.panel.draw_requested.connect(self.begin)
 
     @property
@@ -116,14 +109,16 @@ class SeamDrawTool(QObject):
             cut_garment(drawing, block, garment.is_bridged)
             return block
 
-        refuse = self._refuse
-        self._job = self._context.jobs.run(tr("Dividing pieces…"), work, self._take, refuse, waited=True)
+        take, refuse = partial(self._take, garment.block), self._refuse
+        self._job = self._context.jobs.run(tr("Dividing pieces…"), work, take, refuse, waited=True)
 
     def _refuse(self, error: Exception) -> None:
         self._context.notifications.error(error, "pattern")
 
-    def _take(self, divided: object) -> None:
-        block = cast(Block, divided)
+    def _take(self, former: Block, divided: object) -> None:
+        block, plan = cast(Block, divided), self._controller.plan
         self.leave()
+        if plan is None or plan.block != former:  # changed while the pieces were cut
+            return
         name = seam_title(block.seams[-1].name)
         self._controller.change(tr("{seam} drawn").format(seam=name), block=block)
