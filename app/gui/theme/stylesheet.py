@@ -107,7 +107,8 @@ def apply_theme(app: QApplication, dark: bool) -> None:
     app.setStyle("Fusion")
     app.setFont(font("body"))
     app.setPalette(palette(tokens))
-    app.setPalette(_box_palette(tokens), "QCheckBox")  # type: ignore[arg-type]  # the stub wants bytes
+    for kind in ("QCheckBox", "QRadioButton"):
+        app.setPalette(_box_palette(tokens), kind)  # type: ignore[arg-type]  # the stub wants bytes
     app.setStyleSheet(style_sheet(tokens))
 
 

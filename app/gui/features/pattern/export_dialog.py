@@ -59,7 +59,7 @@ class PatternExportDialog(Dialog):
             choice.clicked.connect(lambda _=False, kind=kind: self._choose(kind))
             column.addWidget(choice)
         column.addSpacing(12)
-        self.paper_label = label(tr("Paper"), "caption")
+        self.paper_label = label(tr("Paper size"), "caption")
         self.papers = Segment(tuple(paper_titles().items()), small=True)
         self.papers.set_choice(self.paper)
         self.papers.chosen.connect(self._choose_paper)
