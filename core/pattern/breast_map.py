@@ -66,14 +66,6 @@ class BreastMap:
         clock = np.degrees(np.arctan2(off @ outward, off @ up)) % 360.0
         return np.where(clock < 360.0, clock, 0.0)  # a hair below 0 is rounded to 360
 
-    def word(self, place: Points) -> str:
-        """Return the place of a block that is nearest to ``place`` (3,) [mm], "root 205*0.4" or "apex"."""
-        clock = float(self.clock(place[None])[0])
-        way = np.linspace(0.0, REACH, self.rays.shape[1])
-        far = way[np.linalg.norm(self.places(np.full(len(way), clock), way) - place, axis=1).argmin()]
-        share = float(far / self.root_distance(clock))
-        return "apex" if far <= STEP else f"root {clock:.0f}*{share:.2f}"
-
     def places(self, clock: Floats, distance: Floats) -> Points:
         """Return places of the skin at clock positions [degrees] and distances [mm], (n,), as (n, 3) [mm]."""
         turn = np.atleast_1d(clock) % 360.0 * (RAYS / 360.0)

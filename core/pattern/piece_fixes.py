@@ -20,6 +20,8 @@ from core.pattern.breast_map import BreastMap
 from core.pattern.dart_chart import CLEAR, Dart, DartChart, dart_chart
 from core.pattern.garment import CutGarment, Pattern, cut_garment
 from core.pattern.panel import Panel
+from core.pattern.place_words import word_at
+from core.pattern.places import BodyPlaces
 from core.pattern.seam_curves import SeamDrawing
 from core.pattern.seam_edits import new_name, with_dividing_seam
 from core.progress import Progress, quiet
@@ -138,7 +140,9 @@ def _cuts(pattern: Pattern, panel: Panel, drawing: SeamDrawing, progress: Progre
         if all(abs((_clock(dart) - _clock(other) + 180.0) % 360.0 - 180.0) >= _APART for other in chosen):
             chosen.append(dart)
     plan = next(p for p in pattern.garment.block.panels if p.name == without_side(panel.name)[0])
-    changes = [_with_dart(pattern.garment.block, plan, dart, breast) for dart in chosen[:MOST_DARTS]]
+    side = without_side(panel.name)[1] or SIDES[0]
+    block, places = pattern.garment.block, drawing.places
+    changes = [_with_dart(block, plan, dart, places, side) for dart in chosen[:MOST_DARTS]]
     if chosen:
         changes += _with_seam(pattern, plan, panel, chart, chosen[0], drawing)
     return changes
@@ -163,10 +167,10 @@ def _start_word(dart: Dart) -> str:
     return f"root {_clock(dart):.0f} > {without_side(dart.seam)[0]}"
 
 
-def _with_dart(block: Block, plan: PanelPlan, dart: Dart, breast: BreastMap) -> _Change:
+def _with_dart(block: Block, plan: PanelPlan, dart: Dart, places: BodyPlaces, side: str) -> _Change:
     """Return a block with one more slit on each side."""
     name = new_name(f"{plan.name} dart", [seam.name for seam in block.seams])
-    end = breast.word(dart.end)
+    end = word_at(places, side, dart.end)
     seam = Seam(name, WAY, each=True, places=(_start_word(dart), end), slit=True)
     message = partial(_dart_message, dart)
     return _Change(DART, message, replace(block, seams=(*block.seams, seam)), (plan.name,))
@@ -236,10 +240,10 @@ def with_dart(pattern: Pattern, piece: str, dart: Dart, drawing: SeamDrawing) ->
     breast = _breast_of(panel, pattern.places[number], drawing)
     if breast is None or dart.clock is None:
         raise PatternError(
-            Message("A dart can be added near a breast only."), Message("Draw it into the block instead.")
+            Message("A dart can be added near a breast only."), Message("Draw the dart on the body instead.")
         )
     plan = next(each for each in block.panels if each.name == without_side(piece)[0])
-    return _with_dart(block, plan, dart, breast).block
+    return _with_dart(block, plan, dart, drawing.places, without_side(piece)[1] or SIDES[0]).block
 
 
 def chart_of(pattern: Pattern, piece: str, drawing: SeamDrawing, progress: Progress = quiet) -> DartChart:

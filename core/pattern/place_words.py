@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from core.control_mesh.fit import BUST, LOWER
-from core.document.block import ROOT, WAY, Level, Seam
+from core.document.block import REFERENCES, ROOT, WAY, Level, Seam
 from core.errors import PatternError
 from core.geometry.closest_point import barycentric, nearest_faces
 from core.geometry.mesh import Mesh, Points
@@ -35,7 +35,7 @@ def moved_word(places: BodyPlaces, word: str, side: str, levels: Mapping[str, fl
 
     ``word`` and ``side`` are those of the seam before, ``levels`` heights by name [mm]. Angles are told to
     1 degree, heights and distances to 1 mm. The bust point becomes a place of its root, a landmark one of a
-    control mesh. Raises PatternError for a word that is none.
+    control mesh or a level. Raises PatternError for a word that is none.
     """
     text, own, onto = parts_of(word)
     before = places.place(f"{text} {own}".rstrip(), side, levels, {})
@@ -58,10 +58,10 @@ def _moved(places: BodyPlaces, text: str, side: str, levels: Mapping[str, float]
         z = places.level_height(match[2], levels)
         return f"{match[1]} {match[2]}{_off(float(target[2]) - z, '')}"
     if match := CELL_WORD.fullmatch(text):
-        return _cell(places, LOWER if match[1] else BUST, side, target)
-    words = [_cell(places, region, side, target) for region in places.meshes]
-    away = [np.linalg.norm(places.place(each, side, levels, {}) - target) for each in words]
-    return words[int(np.argmin(away))]
+        cell = _cell(places, LOWER if match[1] else BUST, side, target)
+        if np.linalg.norm(places.place(cell, side, levels, {}) - target) < 2.0 * OFF:
+            return cell
+    return word_at(places, side, target)  # beyond the control mesh, as where a landmark is left
 
 
 def _off(value: float, former: str | None) -> str:
@@ -114,8 +114,8 @@ def _cell(places: BodyPlaces, region: str, side: str, target: Points) -> str:
 def word_at(places: BodyPlaces, side: str, target: Points) -> str:
     """Return a word for a new place of a seam on a side at ``target`` (3,) [mm] of the skin.
 
-    On a breast it is told by the root, elsewhere by a control mesh; for a seam over the middle, side "", it
-    has a side of its own. Raises PatternError for a body without breasts where there is no control mesh.
+    On a breast it is told by the root, elsewhere by a control mesh, beyond that by a level; for a seam over
+    the middle, side "", it has a side of its own. Raises PatternError where there is no skin.
     """
     own = side or ("left" if target[0] > places.middle else "right")
 
@@ -123,6 +123,8 @@ def word_at(places: BodyPlaces, side: str, target: Points) -> str:
         return float(np.linalg.norm(places.place(word, own, {}, {}) - target))
 
     word = min((_cell(places, region, own, target) for region in places.meshes), key=off)
+    if off(word) >= OFF:  # beyond the control meshes
+        word = min(word, _on_level(places, own, target), key=off)
     if f"bust_point_{own}" in places.landmarks.points:
         breast = places.breasts[own]
         clock, far = breast.locate(target)
@@ -130,6 +132,16 @@ def word_at(places: BodyPlaces, side: str, target: Points) -> str:
         if far < _BREAST * float(breast.root_distance(clock)) and off(root) < OFF:
             word = root
     return word if side else f"{word} {own}"
+
+
+def _on_level(places: BodyPlaces, side: str, target: Points) -> str:
+    """Return a word by the share of the half round, so far above or below the nearest of known levels."""
+    lower = () if places.lower is None else tuple(places.lower.points)
+    heights = {name: places.height(name) for name in ("under", "bust", *lower) if name in REFERENCES}
+    name = min(heights, key=lambda each: abs(float(target[2]) - heights[each]))
+    off = round(float(target[2]) - heights[name])
+    share = share_at(places, heights[name] + off, side, target)
+    return f"ring {name} {share:g}" + (f"{off:+d}" if off else "")
 
 
 def moved_span(

@@ -16,7 +16,7 @@ from core.errors import PatternError
 from core.geometry.closest_point import nearest_faces
 from core.geometry.mesh import Points
 from core.pattern.block_library import built_in_blocks, find_block
-from core.pattern.place_words import moved_level, moved_span, moved_word, seam_handles
+from core.pattern.place_words import moved_level, moved_span, moved_word, seam_handles, word_at
 from core.pattern.places import BodyPlaces
 from core.pattern.seam_curves import SeamDrawing
 from core.pipeline.build import Stages
@@ -137,3 +137,17 @@ def test_ends_of_roots_and_rings_are_dragged(built: Built) -> None:
     level = Level("band", "under", -18.0)
     height = own.height("under") - 25.2
     assert moved_level(own, level, np.array([0.0, 0.0, height])) == -25.0
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_a_new_place_is_told_by_the_breast_or_a_mesh_and_by_its_side(built: Built, side: str) -> None:
+    own = places(built("mannequin"))
+    on_breast = own.place("root 205*0.40", side, {}, {})
+    assert word_at(own, side, on_breast) == "root 205*0.40"
+    assert word_at(own, "", on_breast) == f"root 205*0.40 {side}"
+    for level in ("under", "bust"):
+        for share in np.arange(0.0, 1.01, 0.1):
+            target = own.place(f"ring {level} {share:.1f}-12", side, {}, {})
+            word = word_at(own, side, target)
+            assert np.linalg.norm(own.place(word, side, {}, {}) - target) < 3.1, word
+            assert not (share > 0.6 and word.startswith("root")), "the back is no part of a breast"
