@@ -50,7 +50,7 @@ words: setup  ## bring the catalogues in resources/locale up to date with the te
 lock:  ## pin every dependency again (needs uv, which nothing else needs)
 	@[ -n "$(uv)" ] || { echo "make lock needs uv: python3 -m pip install uv"; exit 1; }
 	$(uv) pip compile --quiet --universal --fork-strategy fewest --python-version 3.11 --generate-hashes \
-		--no-emit-index-url --custom-compile-command "make lock" --extra dev --extra fast --output-file requirements.lock pyproject.toml
+		--no-emit-index-url --custom-compile-command "make lock" --extra dev --extra fast --extra batch --output-file requirements.lock pyproject.toml
 
 docs: setup  ## build the user guide into site/, without the network
 	@$(python) packaging/guide.py

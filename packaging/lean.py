@@ -88,6 +88,7 @@ NO_MODULES = [
     "PySide6.QtDBus", "PySide6.QtTest", "readline", "tkinter", "IPython", "PyQt5", "PyQt6", "PySide2",
     "pytest", "hypothesis", "mypy", "librt", "yaml", "sphinx", "docutils", "babel", "jinja2", "pygments",
     "rich", "cyclopts", "setuptools", "pip", "jedi", "lib2to3", "pydoc_data", "PIL._avif",
+    "dask", "distributed", "pyarrow", "psutil",
 ]  # fmt: skip
 
 

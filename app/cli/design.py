@@ -8,7 +8,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from app.cli.lines import with_lines_and_elastics, with_lower_trunk
 from app.cli.options import NUMBERS, SWITCHES, WORDS, shown_text, stored_word
 from core.control_mesh.template import read_template
 from core.document.cup import CUP_RANGES, Cup
@@ -18,6 +17,7 @@ from core.document.line_notation import parse_line
 from core.document.storage.backups import backup_before_write
 from core.document.storage.project_file import SUFFIX, is_project, open_project, save_project
 from core.errors import UserError
+from core.garment.line_requests import with_lines_and_elastics, with_lower_trunk
 from core.garment.presets import find_preset, with_preset
 from core.landmarks.manual import placed_mark
 from core.messages import Message
@@ -35,6 +35,13 @@ def design_of(options: argparse.Namespace) -> Design:
     axes = {key: getattr(options, key) for key in ("unit", "up", "front") if getattr(options, key, None)}
     scan = design.scan.set_up(**axes)
     design = replace(design, scan=replace(scan, edits=_edits_of(scan.edits, options)))
+    for mark in map(placed_mark, getattr(options, "landmark", None) or []):
+        design = design.with_placed(mark.name, mark.position)
+    return with_options(design, options)
+
+
+def with_options(design: Design, options: argparse.Namespace) -> Design:
+    """Return a design changed by the options that hold for any body. Raises UserError."""
     settings = settings_of(getattr(options, "settings", None) or [])
     design = design.with_template(settings.pop("template", design.template)).with_settings(settings)
     for text in getattr(options, "path", None) or []:
@@ -45,8 +52,6 @@ def design_of(options: argparse.Namespace) -> Design:
         # Cups need solid tissue: who asks for them asks for it.
         tissue = settings.get("tissue", "solid") if options.cup != "none" else design.tissue
         design = replace(design, cup=cup_of(options.cup, design.cup), tissue=tissue)
-    for mark in map(placed_mark, getattr(options, "landmark", None) or []):
-        design = design.with_placed(mark.name, mark.position)
     design = with_lower_trunk(design, getattr(options, "line", None) or [])
     return replace(design, volume=getattr(options, "volume", None) or design.volume)
 

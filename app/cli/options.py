@@ -51,10 +51,7 @@ def add_scan(parser: ArgumentParser, *, required: bool = True) -> None:
     """Add the input file, and the options that orient, edit and mark a scan."""
     kinds = f"a scan ({SCAN_KINDS}, each also compressed as {PACKED}) or a project (.busk)"
     parser.add_argument("input", metavar="SCAN_OR_PROJECT", nargs=None if required else "?", help=kinds)
-    units = tuple(MILLIMETRES)
-    parser.add_argument("--unit", type=str.lower, choices=units, help="unit of the scan (default: detected)")
-    parser.add_argument("--up", metavar="AXIS", help=f"up axis of the scan: {_AXIS.format(axis='+z')}")
-    parser.add_argument("--front", metavar="AXIS", help=f"front axis of the scan: {_AXIS.format(axis='-y')}")
+    add_orientation(parser)
     parser.add_argument("--landmark", action="append", metavar="NAME=x,y,z", help=LANDMARK_HELP)
     for end, where in (("from", "below"), ("to", "above")):
         crop = f"crop the scan {where} this height above its lowest point"
@@ -62,6 +59,14 @@ def add_scan(parser: ArgumentParser, *, required: bool = True) -> None:
     parser.add_argument("--mirror", choices=SIDES, help="mirror this half of the scan to the other side")
     fill = "fill the hole at this centre in mm on the upright body, or 'all'; may be repeated"
     parser.add_argument("--fill", action="append", metavar="x,y,z", help=fill)
+
+
+def add_orientation(parser: ArgumentParser) -> None:
+    """Add the unit and the axes of a scan."""
+    units = tuple(MILLIMETRES)
+    parser.add_argument("--unit", type=str.lower, choices=units, help="unit of the scan (default: detected)")
+    parser.add_argument("--up", metavar="AXIS", help=f"up axis of the scan: {_AXIS.format(axis='+z')}")
+    parser.add_argument("--front", metavar="AXIS", help=f"front axis of the scan: {_AXIS.format(axis='-y')}")
 
 
 def add_settings(parser: ArgumentParser) -> None:

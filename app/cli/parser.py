@@ -13,6 +13,7 @@ from core.messages import Message
 
 COMMANDS = {
     "solve": "solve a design and write body, control mesh, iterations and report",
+    "batch": "solve one design on many bodies and write a table of results",
     "target": "compute line lengths for target positions and measurements",
     "calibrate": "compare with a fitting scan and fit tissue and line stiffness",
     "diagnose": "find conflicting lines and suggest the smallest fix",

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, reduce
 
-from app.cli.lines import apply_elastics, apply_lines
 from app.presenters.assessment import assessment_lines
 from app.presenters.elastics import effect_text, next_step
 from core.document.design import Design
@@ -15,6 +14,7 @@ from core.errors import LineError
 from core.garment.assessment import Assessment, assess
 from core.garment.elastic_library import library
 from core.garment.elastic_options import KEEP_CUT, KEEP_FIT, elastic_option, outcome_of
+from core.garment.line_requests import apply_elastics, apply_lines
 from core.garment.match_shape import match_lengths
 from core.garment.tension import divergence_error
 from core.messages import Message, join

@@ -11,9 +11,9 @@ from app.i18n.lengths import length, length_number, length_unit, shown_digits, s
 from app.presenters.lines import row_title
 from app.presenters.measurements import length_uncertainty, plus_minus
 from app.presenters.messages import render
-from app.presenters.target_shape import is_met, is_signed, stop_text, target_title
+from app.presenters.target_shape import is_met, stop_text, target_title
 from core.analysis.inverse_design.bust_quantities import FURTHER_OUT, HIGHER
-from core.analysis.inverse_design.profile_quantities import section_of
+from core.analysis.inverse_design.profile_quantities import is_signed, section_of
 from core.analysis.inverse_design.quantity import Goal
 from core.analysis.symmetry.compare import BeforeAfter, SideDifference, SymmetryRow, symmetry_rows
 from core.analysis.symmetry.split_sides import (

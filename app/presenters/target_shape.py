@@ -11,7 +11,7 @@ from app.i18n.catalog import colon, joined, listed, number, tr
 from app.i18n.lengths import length, length_number, length_unit
 from app.presenters.lines import told_title
 from core.analysis.inverse_design.bust_quantities import FURTHER_OUT, GIRTH, HIGHER, LIFT, OUT
-from core.analysis.inverse_design.profile_quantities import profile_deviations, section_of
+from core.analysis.inverse_design.profile_quantities import is_signed, profile_deviations, section_of
 from core.analysis.inverse_design.quantity import Goal
 from core.document.design import Design
 from core.geometry.mesh import Floats
@@ -67,11 +67,6 @@ def profile_title(section: str) -> str:
         return sides[section]
     x = float(section)
     return tr("Profile at {x}").format(x=length(x, 0 if x.is_integer() else 1))
-
-
-def is_signed(name: str) -> bool:
-    """Return whether a quantity is relative to the original, so that its plus is written."""
-    return "girth" not in name and not section_of(name)
 
 
 def target_text(name: str, value: float) -> str:

@@ -199,7 +199,7 @@ def make_report(
         scan=stages.design.scan.name,
         state=verdict.display_state,
         settled=verdict.state == "settled",
-        lift=_lift(stages.rest_marks, stages.watch(points[0])) if verdict.is_valid else None,
+        lift=lift_of(stages.rest_marks, stages.watch(points[0])) if verdict.is_valid else None,
         volume=VolumeKept(stages.model.volume.rest_volume / 1000.0, *reversed(controlled_volume(shown))),
         measures=tuple(measure_rows(before, after)),
         sizes=found,
@@ -250,7 +250,8 @@ def _sizes(before: Measures, heading: Heading) -> tuple[tuple[dict[str, Any], ..
     return tuple(sizes_text(answers[key]) for key in keys), EMPTY
 
 
-def _lift(rest: Observables, now: Observables) -> Lift:
+def lift_of(rest: Observables, now: Observables) -> Lift:
+    """Return how far the bust points moved from the original body."""
     up = now.bust_point_left_z - rest.bust_point_left_z, now.bust_point_right_z - rest.bust_point_right_z
     forward = (
         now.bust_point_left_out - rest.bust_point_left_out,
@@ -325,7 +326,7 @@ def _turns(stages: Stages, records: Sequence[Record]) -> IterationCurve:
         stages.design.volume,
         tuple(row.iteration for row, _ in rows),
         tuple(100.0 * row.error for row, _ in rows),
-        tuple(_lift(rest, marks).up for _, marks in rows),
+        tuple(lift_of(rest, marks).up for _, marks in rows),
     )
 
 

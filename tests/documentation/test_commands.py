@@ -12,7 +12,7 @@ from page_commands import PAGES, PLACEHOLDER, ROOT, commands_of, furnish, inline
 from app.cli.parser import COMMANDS, command_options, command_parser, window_options
 from core.errors import UserError
 
-LENGTHY = ("calibrate", "demo", "figures", "self-test", "uncertainty", "controls")
+LENGTHY = ("batch", "calibrate", "demo", "figures", "self-test", "uncertainty", "controls")
 """Commands that take long: they are parsed alone."""
 
 DONE = (0, 3)

@@ -26,6 +26,11 @@ LIBRARIES = {
     "app.rendering": SCENE | {"PIL"},
     "app.presenters": {"numpy"},
     "app.research": SCENE | {"matplotlib", "PIL", "threadpoolctl", "trimesh"},
+    "app.batch": {"threadpoolctl", "psutil"},
+    "app.batch.engine": {"dask", "distributed"},
+    "app.batch.worker_plugin": {"distributed"},
+    "app.batch.index_page": {"numpy", "pyarrow"},
+    "app.batch.store": {"pyarrow"},
     "app.report": QT | {"numpy", "shapely"},
     "app.gui.theme": QT | {"PySide6.QtSvg"},
     "app.gui.widgets": QT | {"numpy"},
@@ -36,6 +41,7 @@ LIBRARIES = {
     "app.gui.drawing_base": QT | {"numpy"},
     "app.gui": QT
     | {"PySide6", "PySide6.QtPrintSupport", "platformdirs", "threadpoolctl", "pyvista", "pyvistaqt"},
+    "app.cli.commands.batch": {"distributed"},
     "app.cli": QT | SCENE | {"PySide6", "PIL", "ezdxf", "pyvistaqt", "platformdirs", "threadpoolctl"},
     "app": set(),
 }

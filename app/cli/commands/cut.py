@@ -9,7 +9,6 @@ from dataclasses import dataclass, fields
 from functools import partial
 
 from app.cli.design import design_of
-from app.cli.lines import with_lines_and_elastics
 from app.cli.options import add_forms, add_lines, add_scan, form_of
 from app.cli.output import csv_text, finish, table_lines, write_output
 from app.cli.solved_design import SolvedDesign, solve_design
@@ -20,6 +19,7 @@ from core.errors import LineError, UserError
 from core.garment.cut_list import CutList, CutRow, cut_list_of
 from core.garment.elastic_library import library
 from core.garment.elastic_options import KEEP_CUT, KEEP_FIT, elastic_option
+from core.garment.line_requests import with_lines_and_elastics
 from core.messages import LineName, Message, plain
 from core.pipeline.build import Stages, build
 

@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from app.cli.design import design_of
-from app.cli.lines import with_lines_and_elastics
 from app.cli.options import add_lines, picture_size
 from app.cli.output import finish
 from app.cli.solved_design import is_converged, solve_valid
@@ -17,6 +16,7 @@ from app.presenters.export_preview import check, prepare_export
 from app.presenters.scan import KINDS as SCANS
 from core.errors import UserError, reason_of
 from core.garment.assessment import assess
+from core.garment.line_requests import with_lines_and_elastics
 from core.messages import Message
 from core.pipeline.build import build
 from core.pipeline.warnings import shape_warnings

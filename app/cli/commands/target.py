@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 import re
-import unicodedata
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -15,7 +14,6 @@ from typing import Any
 import numpy as np
 
 from app.cli.design import check_project_name, design_of, save_design
-from app.cli.lines import with_lines_and_elastics
 from app.cli.options import add_forms, add_lines, add_project_output, add_scan
 from app.cli.output import finish, table_lines
 from app.i18n.lengths import length
@@ -25,7 +23,6 @@ from app.presenters.target_shape import (
     change_text,
     conflict_text,
     deviation_text,
-    is_signed,
     reasons,
     result_text,
     target_title,
@@ -34,13 +31,15 @@ from core import __version__
 from core.analysis.inverse_design.conflicts import Conflict
 from core.analysis.inverse_design.line_selection import LineSelection, activated, optional_lines
 from core.analysis.inverse_design.profile_curve import profile_goals, read_profile
-from core.analysis.inverse_design.profile_quantities import section_of
-from core.analysis.inverse_design.quantities import NAMES, reading
+from core.analysis.inverse_design.profile_quantities import is_signed, section_of
+from core.analysis.inverse_design.quantities import NAMES
 from core.analysis.inverse_design.quantity import Goal
 from core.analysis.inverse_design.search import Bounds
 from core.analysis.inverse_design.solve import InverseResult
+from core.analysis.inverse_design.target_requests import absolute, changes_of, goals_of
 from core.errors import LineError, UserError
 from core.garment.assessment import Assessment, assess
+from core.garment.line_requests import with_lines_and_elastics
 from core.geometry.mesh import Floats
 from core.mechanics.constraint_lines import Line, length_ratio
 from core.messages import Message
@@ -68,12 +67,7 @@ OPTIONAL_HELP = (
     "an inactive line that may be activated if the active lines do not reach the targets, or all; may be "
     "repeated"
 )
-_TARGET = re.compile(
-    r"\s*([a-z ]+?)\s*=\s*([+-]?\d+(?:[.,]\d+)?)\s*(mm|cm|in)?\s*(?:@\s*(high|normal|low)\s*)?"
-)
-_MM = {None: 1.0, "mm": 1.0, "cm": 10.0, "in": 25.4}
 _SECTION = re.compile(r"\s*(left|right|[+-]?\d+(?:\.\d+)?)\s*(?:@\s*(high|normal|low)\s*)?=", re.IGNORECASE)
-_LARGEST = 10_000.0  # mm
 _HARDEST = 50.0  # kPa
 
 
@@ -141,7 +135,7 @@ def find_lengths(options: Namespace) -> TargetResult:
     chosen = stages.design.all_active_lines()
     active = {line.name.lower(): line for line in stages.lines if line.name in chosen}
     locked = [line.name for name in options.lock or [] for line in _active(active, name, name)]
-    goals = tuple(_absolute(stages, goal) if goal.name in changes else goal for goal in goals)
+    goals = tuple(absolute(stages, goal) if goal.name in changes else goal for goal in goals)
     for section, priority, curve in curves:
         goals += tuple(replace(goal, priority=priority) for goal in profile_goals(stages, section, curve))
     shortest = dict(pair for each in options.shortest or [] for pair in _shortest(active, each))
@@ -149,44 +143,6 @@ def find_lengths(options: Namespace) -> TargetResult:
     reply = solver.solve(goals)
     assessment = assess(solve(build(reply.design, stages)))
     return TargetResult(stages, goals, reply, assessment, solver.conflicts(reply, goals))
-
-
-def changes_of(texts: Sequence[str]) -> frozenset[str]:
-    """Return the names of girths that texts, NAME=VALUE, tell with a sign: changes from the original body."""
-    matches = filter(None, map(_matched, texts))
-    return frozenset(name for name, value, *_ in matches if value[0] in "+-" and not is_signed(name))
-
-
-def _matched(text: str) -> tuple[str, str, str | None, str | None] | None:
-    """Return name, value, unit and priority of a text, NAME=VALUE, None if it is none."""
-    plain = unicodedata.normalize("NFKC", text).replace("\N{MINUS SIGN}", "-").lower()
-    match = _TARGET.fullmatch(plain)
-    return None if match is None else (" ".join(match[1].split()), match[2], match[3], match[4])
-
-
-def goals_of(texts: Sequence[str]) -> tuple[Goal, ...]:
-    """Return the goals of NAME=VALUE texts. Raises UserError with the valid names."""
-    goals: dict[str, Goal] = {}
-    for text in texts:
-        name, number, unit, priority = _matched(text) or ("", "0", None, None)
-        if name not in NAMES:
-            names = ", ".join(NAMES)
-            raise UserError(
-                Message("'{text}' is not a target.", text=text),
-                Message("Enter NAME=12mm. Names: {names}.", names=names),
-            )
-        value = float(number.replace(",", ".")) * _MM[unit]
-        if abs(value) > _LARGEST:
-            raise UserError(
-                Message("'{text}' is not a valid body length.", text=text),
-                Message("Enter millimetres, or append cm or in."),
-            )
-        if name in goals:
-            raise UserError(
-                Message("{name} is specified twice.", name=name), Message("Specify each name only once.")
-            )
-        goals[name] = Goal(name, value, priority or "normal")
-    return tuple(goals.values())
 
 
 def _curve(request: str) -> tuple[str, str, Floats]:
@@ -236,11 +192,6 @@ def _shortest(active: Mapping[str, Line], request: str) -> Iterator[tuple[str, f
     name, _, text = request.partition("=")
     for line in _active(active, name, request):
         yield line.name, length_ratio(text, line.name, line.rest_length, line.whole_length)
-
-
-def _absolute(stages: Stages, goal: Goal) -> Goal:
-    """Return the goal of a girth that was told as what it is to change by from the original body."""
-    return replace(goal, value=goal.value + reading(stages, goal.name)(stages.rest_points).value)
 
 
 def _text(found: TargetResult, out: str) -> Iterator[str]:

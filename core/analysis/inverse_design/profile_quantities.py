@@ -34,6 +34,11 @@ def profile_name(section: str, height: float) -> str:
     return f"{PROFILE} {section} {height:.3f}"
 
 
+def is_signed(name: str) -> bool:
+    """Return whether a quantity is relative to the original, so that its plus is written."""
+    return "girth" not in name and not section_of(name)
+
+
 def section_of(name: str) -> str:
     """Return the name of a profile's figure without its height; nothing for a figure of another kind."""
     return name.rpartition(" ")[0] if name.startswith(f"{PROFILE} ") else ""

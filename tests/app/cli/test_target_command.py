@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 from shapes import SAMPLES
 
-from app.cli.commands.target import goals_of
 from app.cli.main import BAD_INPUT, main
 from app.cli.output import DONE, NOT_CONVERGED
 from app.presenters.assessment import headline
 from core.analysis.inverse_design.quantity import Goal
+from core.analysis.inverse_design.target_requests import goals_of
 from core.document.storage.project_file import open_project
 from core.errors import UserError
 

@@ -92,6 +92,7 @@ def test_no_text_is_put_together_before_it_is_looked_up() -> None:
 
 
 TYPED = (
+    "Enter NAME=12mm",
     "Enter 94, −6%",
     "Enter a length such as",
     "Enter the value in mm",

@@ -9,7 +9,6 @@ from dataclasses import replace
 import pytest
 from shapes import SAMPLES
 
-from app.cli.commands.target import goals_of
 from app.cli.main import main
 from app.cli.output import NOT_CONVERGED
 from app.presenters.samples import sample_design
@@ -18,6 +17,7 @@ from core.analysis.inverse_design.objective import NEAR, goal_weights
 from core.analysis.inverse_design.quantities import tolerance
 from core.analysis.inverse_design.quantity import PRIORITIES, Goal
 from core.analysis.inverse_design.solve import InverseSolver, solve_targets
+from core.analysis.inverse_design.target_requests import goals_of
 from core.garment.elastic_library import find_elastic
 from core.pipeline.build import Stages, build
 

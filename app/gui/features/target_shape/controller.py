@@ -25,7 +25,8 @@ from app.gui.features.target_shape.worker import TargetAnswer, TargetQuery, Targ
 from app.gui.widgets.basic import announce
 from app.i18n.catalog import tr
 from app.presenters.messages import render
-from app.presenters.target_shape import inactive_text, is_signed, step_text
+from app.presenters.target_shape import inactive_text, step_text
+from core.analysis.inverse_design.profile_quantities import is_signed
 from core.analysis.inverse_design.quantities import reading
 from core.analysis.inverse_design.quantity import Goal
 from core.document.design import Design

@@ -21,7 +21,6 @@ from app.presenters.target_shape import (
     formatted_value,
     is_met,
     is_near,
-    is_signed,
     locked_lines_text,
     pressure_text,
     profile_title,
@@ -30,6 +29,7 @@ from app.presenters.target_shape import (
     target_title,
     unlimited_text,
 )
+from core.analysis.inverse_design.profile_quantities import is_signed
 from core.analysis.inverse_design.quantity import Goal
 from core.document.design import Design
 from core.garment.pressure import pressure_limits

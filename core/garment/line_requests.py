@@ -1,4 +1,4 @@
-"""Lengths and elastics of lines as options give them: NAME=LENGTH and LINE=ELASTIC."""
+"""Lengths and elastics of lines as text requests: NAME=LENGTH and LINE=ELASTIC."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from core.document.design import Design
+from core.document.elastic import Elastic
 from core.document.lines import LOWER
 from core.document.lower_trunk import LowerTrunk, lower_lines_of
 from core.errors import LineError
@@ -20,7 +21,7 @@ from core.pipeline.build import Stages, build
 def with_lower_trunk(design: Design, requests: Sequence[str]) -> Design:
     """Return a design that has the lower trunk if a request, NAME=LENGTH, is for one of its lines."""
     own = [line.name for line in design.own_lines]
-    asked = [name for request in requests if not _named(name := _name(request), own)]
+    asked = [name for request in requests if not named(name := _name(request), own)]
     if design.lower is None and any(map(lower_lines_of, asked)):
         return replace(design, lower=LowerTrunk())
     return design
@@ -44,7 +45,7 @@ def apply_lines(design: Design, lines: Sequence[Line], requests: Sequence[str]) 
     known = {line.name: line for line in lines}
     for request in requests:
         _, equals, text = request.partition("=")
-        names = _named(_name(request), known)
+        names = named(_name(request), known)
         if not names or not equals:
             raise LineError(
                 Message("'{request}' is not a line.", request=request),
@@ -62,15 +63,28 @@ def apply_elastics(design: Design, requests: Sequence[str]) -> Design:
     active = sorted(design.all_active_lines())
     for request in requests:
         _, equals, elastic = (part.strip() for part in request.partition("="))
-        names = _named(_name(request), active)
-        if not names or not equals:
+        if not equals or not named(_name(request), active):
             raise LineError(
                 Message("'{request}' is not an active line.", request=request),
                 Message("Enter LINE=ELASTIC. Active lines: {active}.", active=", ".join(active) or "none"),
             )
-        chosen = read_elastic(Path(elastic)) if elastic.lower().endswith(".csv") else find_elastic(elastic)
-        for name in dict.fromkeys(part for each in names for part in design.band_of(each)):
-            design = design.with_elastic(name, chosen)
+        design = with_line_elastic(design, _name(request), elastic_of(elastic))
+    return design
+
+
+def elastic_of(text: str) -> Elastic:
+    """Return the elastic that a text names: one of the library, or that of a table FILE.csv.
+
+    Raises LineError.
+    """
+    return read_elastic(Path(text)) if text.lower().endswith(".csv") else find_elastic(text)
+
+
+def with_line_elastic(design: Design, name: str, elastic: Elastic) -> Design:
+    """Return a design with an elastic on the active line ``name``, or on those of both sides."""
+    names = named(name, sorted(design.all_active_lines()))
+    for part in dict.fromkeys(part for each in names for part in design.band_of(each)):
+        design = design.with_elastic(part, elastic)
     return design
 
 
@@ -78,8 +92,9 @@ def _name(request: str) -> str:
     return request.partition("=")[0].strip().lower()
 
 
-def _named(name: str, known: Collection[str]) -> list[str]:
+def named(name: str, known: Collection[str]) -> list[str]:
     """Return which of the ``known`` lines a name stands for: one of them, or both sides."""
+    name = name.strip().lower()
     same = [each for each in known if each.lower() == name]
     sides = [f"{name}{gap}{side}" for gap in (" ", "-") for side in SIDES]
     return same or [each for each in known if each.lower() in sides]

@@ -1,0 +1,1 @@
+"""Runs of one design on many bodies, on Dask: no Qt."""

@@ -1,0 +1,179 @@
+"""The engine of a run: bodies as tasks of Dask, on a local cluster or on one that is there."""
+
+from __future__ import annotations
+
+import json
+import logging
+import secrets
+import signal
+import time
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
+from itertools import chain, islice
+from multiprocessing import resource_tracker
+from pathlib import Path
+from typing import Any
+
+import dask
+from distributed import Client, Future, KilledWorker, LocalCluster, as_completed
+
+from app.batch.batch_design import BatchDesign
+from app.batch.body_worker import Limits, lost_row
+from app.batch.one_body import Row
+from app.batch.worker_plugin import BodyProcesses, compute_bodies
+from core import __version__
+from core.errors import UserError
+from core.messages import Message
+
+TASKS_A_WORKER = 2
+"""Tasks in flight for each worker: one that runs and one that waits, however many bodies there are."""
+
+RECOUNT_SECONDS = 5.0
+"""Workers are counted so often [s]: a cluster may grow and shrink."""
+
+WORKERS_A_BODY = 64
+"""A task has one body for so many workers, and at most MOST_BODIES: the scheduler keeps up with thousands."""
+
+MOST_BODIES = 16
+
+TRIES = 5
+"""A task whose workers were lost so often is given up; Dask itself repeats each some times."""
+
+
+_ALL_LOST = "All workers that computed this body were lost. Check the cluster, then use --retry."
+
+
+@dataclass(frozen=True)
+class Run:
+    """What is run and where: on ``workers`` local processes, or on the cluster of a ``scheduler``.
+
+    Reshaped bodies are written to the folder ``bodies``, if there is one.
+    """
+
+    designs: Sequence[BatchDesign]
+    workers: int
+    limits: Limits = field(default_factory=Limits)
+    scheduler: str = ""
+    bodies: Path | None = None
+
+    @property
+    def setup(self) -> str:
+        """Return the first line of a process that computes bodies."""
+        bodies = str(self.bodies.absolute()) if self.bodies else None
+        return json.dumps({"designs": [each.as_data() for each in self.designs], "bodies": bodies})
+
+
+def run_batch(run: Run, bodies: Iterable[Mapping[str, Any]]) -> Iterator[list[Row]]:
+    """Yield rows in the order in which tasks end; ``bodies`` are requests of ``body_process``.
+
+    Bodies are taken from the iterable as tasks end. Lost workers' bodies are computed again. Raises UserError
+    if there is no scheduler, or its workers have another version of Busk.
+    """
+    bodies = iter(bodies)
+    first = next(bodies, None)
+    if first is None:
+        return
+    with _client(run) as client:
+        name = f"busk-bodies-{secrets.token_hex(4)}"
+        _register(client, BodyProcesses(name, run.setup, run.limits))
+        try:
+            yield from _results(client, name, chain([first], bodies))
+        finally:
+            with suppress(Exception):  # of a scheduler that is gone
+                client.unregister_worker_plugin(name)
+
+
+def _results(client: Client, name: str, bodies: Iterator[Mapping[str, Any]]) -> Iterator[list[Row]]:
+    tries: dict[Future, tuple[list[Mapping[str, Any]], int]] = {}
+    running = as_completed(loop=client.loop)
+
+    def submit(task: list[Mapping[str, Any]], tried: int = 0) -> None:
+        future = client.submit(compute_bodies, name, __version__, task, pure=False)
+        tries[future] = task, tried
+        running.add(future)
+
+    workers, counted = 1, -RECOUNT_SECONDS
+
+    def refill() -> None:
+        nonlocal workers, counted
+        if time.monotonic() - counted >= RECOUNT_SECONDS:
+            workers, counted = max(len(client.nthreads()), 1), time.monotonic()
+        size = min(max(workers // WORKERS_A_BODY, 1), MOST_BODIES)
+        while len(tries) < TASKS_A_WORKER * workers and (task := list(islice(bodies, size))):
+            submit(task)
+
+    refill()
+    while tries:
+        future = next(running)
+        task, tried = tries.pop(future)
+        try:
+            rows = future.result()
+        except KilledWorker:
+            if tried + 1 < TRIES:
+                submit(task, tried + 1)
+                continue
+            rows = [lost_row(body, _ALL_LOST) for body in task]
+        if isinstance(rows, str):
+            raise _other_version(rows)
+        future.release()
+        refill()
+        yield rows
+
+
+def _other_version(version: str) -> UserError:
+    return UserError(
+        Message("A worker has Busk {other}, this is Busk {own}.", other=version, own=__version__),
+        Message("Install the same version on every worker."),
+    )
+
+
+def _register(client: Client, plugin: BodyProcesses) -> None:
+    try:
+        client.register_plugin(plugin)
+    except Exception as problem:  # whatever importing Busk raises on another machine
+        raise UserError(
+            Message("The workers cannot run Busk {own}: {why}.", own=__version__, why=str(problem)),
+            Message("Install the same version on every worker."),
+        ) from problem
+
+
+@contextmanager
+def _client(run: Run) -> Iterator[Client]:
+    with dask.config.set({"distributed.scheduler.allowed-failures": 20}):
+        if run.scheduler:
+            try:
+                client = Client(run.scheduler, set_as_default=False)
+            except (OSError, ValueError) as problem:
+                raise UserError(
+                    Message("The scheduler {address} does not answer.", address=run.scheduler),
+                    Message("Check the address, such as tcp://host:8786."),
+                ) from problem
+            with client:
+                yield client
+            return
+        with local_cluster(run) as cluster, Client(cluster, set_as_default=False) as client:
+            yield client
+
+
+def local_cluster(run: Run) -> LocalCluster:
+    """Start workers on this machine alone; they leave Ctrl+C to the command, which ends them."""
+    options = {
+        "n_workers": run.workers,
+        "threads_per_worker": 1,
+        "processes": True,
+        "dashboard_address": "127.0.0.1:0",
+        "scheduler_kwargs": {"dashboard": False},
+        "memory_limit": f"{int(1e6 * (run.limits.memory_mb + 1000.0))}B",
+        "silence_logs": logging.CRITICAL,
+        "security": True,  # no other user of this machine can make the workers run code
+    }
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        return LocalCluster(**options)
+    resource_tracker.ensure_running()  # started later it would take the mask off
+    # The thread that starts workers, also in the place of lost ones, and they themselves inherit the mask.
+    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        return LocalCluster(**options)
+    finally:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})

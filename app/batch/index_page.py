@@ -1,0 +1,95 @@
+"""The page of a run: one HTML file with a table that sorts and filters, and distributions; no network."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Sequence
+from html import escape
+from importlib import resources
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+
+from app.batch.batch_design import BatchDesign
+from app.batch.one_body import Row
+from app.batch.schema import DONE
+
+MOST_ROWS = 20_000
+"""Rows of the page: a browser shows no more with ease. The doubtful come first, the table has all."""
+
+SHOWN = (
+    *("scan", "variant", "state", "verdict", "message", "doubts", "band_eu", "cup_eu", "band_jp", "cup_jp"),
+    *("bust_mm", "underbust_mm", "lift_left_mm", "lift_right_mm", "volume_error_percent", "target_miss_mm"),
+)
+"""Columns that the page begins with, if there are values; those of lines follow."""
+
+_LINE_PARTS = ("cut_length_", "pressure_max_")
+_PLOTTED = ("bust_mm", "underbust_mm", "lift_left_mm", "target_miss_mm", *_LINE_PARTS)
+_BINS = 20
+_DOUBTFUL = {"": 3, "bad": 2, "caution": 1, "good": 0}
+
+
+def index_page(table: pa.Table, designs: Sequence[BatchDesign]) -> str:
+    """Return the page of all rows of a ``table``, the doubtful ones first."""
+    marks = table.select(["state", "verdict", "doubts"]).to_pylist()
+    ranked = sorted(range(len(marks)), key=lambda at: (marks[at]["state"] == DONE, -_doubt(marks[at])))
+    rows = table.take(pa.array(ranked[:MOST_ROWS], pa.int64())).to_pylist()
+    columns = _columns(rows)
+    values = {
+        "columns": columns,
+        "rows": [[_short(row.get(name)) for name in columns] for row in rows],
+        "files": [row.get("body_file") or "" for row in rows],
+    }
+    # "<" would end the script wherever a name of a file says so.
+    data = json.dumps(values, ensure_ascii=False).replace("<", "\\u003c")
+    page = (resources.files("resources") / "pages" / "batch.html").read_text(encoding="utf-8")
+    note = f"The page shows {len(rows)} of {len(marks)} rows." if len(rows) < len(marks) else ""
+    parts = {
+        "variants": escape(", ".join(each.name for each in designs)),
+        "counts": escape(_counts(marks)),
+        "note": note,
+        "plots": "".join(_plot(name, table) for name in columns if name.startswith(_PLOTTED)),
+        "data": data,
+    }
+    for name, text in parts.items():
+        page = page.replace(f"<!--{name}-->", text)
+    return page
+
+
+def _doubt(row: Row) -> int:
+    return 2 * _DOUBTFUL.get(row.get("verdict") or "", 3) + bool(row.get("doubts"))
+
+
+def _columns(rows: Sequence[Row]) -> list[str]:
+    names = dict.fromkeys(name for row in rows for name in row)
+    lines = (name for name in names if name.startswith(_LINE_PARTS))
+    return [name for name in (*SHOWN, *lines) if any(row.get(name) not in (None, "") for row in rows)]
+
+
+def _short(value: Any) -> Any:
+    return round(value, 2) if isinstance(value, float) else value
+
+
+def _counts(rows: Sequence[Row]) -> str:
+    words = [row["verdict"] if row["state"] == DONE else row["state"] for row in rows]
+    return ", ".join(f"{count} {word}" for word, count in sorted(Counter(words).items())) or "no rows"
+
+
+def _plot(name: str, table: pa.Table) -> str:
+    """Return the distribution of a column as SVG with its mean and standard deviation, empty without one."""
+    values = table.column(name).drop_null().to_numpy()
+    if len(values) < 2 or np.ptp(values) == 0.0:
+        return ""
+    counts, edges = np.histogram(values, _BINS)
+    heights = 60.0 * counts / counts.max()
+    bars = "".join(
+        f'<rect x="{10 * number}" y="{60.0 - height:.1f}" width="9" height="{height:.1f}"/>'
+        for number, height in enumerate(heights)
+    )
+    low, high = (f"{edge:.4g}" for edge in edges[[0, -1]])
+    ends = f'<text x="0" y="74">{low}</text><text x="200" y="74" text-anchor="end">{high}</text>'
+    title = f"{escape(name)}: mean {values.mean():.4g}, standard deviation {values.std(ddof=1):.3g}"
+    picture = f'<svg viewBox="0 0 200 78" role="img" aria-label="{title}">{bars}{ends}</svg>'
+    return f"<figure>{picture}<figcaption>{title}</figcaption></figure>"

@@ -1,0 +1,103 @@
+"""Scans of a run: files, folders with all below them, patterns, and lists as CSV."""
+
+from __future__ import annotations
+
+import csv
+import glob
+import hashlib
+import os
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from pathlib import Path
+
+from core.errors import UserError, reason_of
+from core.files.regular_file import open_regular, read_text
+from core.messages import Message
+from core.scan.readers.registry import FORMATS, LARGEST_FILE
+
+_IN_FOLDERS = {f".{kind}" for kind in FORMATS} - {".gz", ".txt", ".csv"}
+"""Endings of scans in folders: texts and tables are scans only where they are named."""
+
+_LARGEST_LIST = 200_000_000  # bytes of a list of scans
+
+
+def list_scans(names: Sequence[str], excluded: Path | None = None) -> list[str]:
+    """Return the paths of all scans, each once, in the order of ``names`` and of their names in folders.
+
+    A named file and a folder that cannot be read are listed as well: they are refused with a reason when they
+    are read. What is in the folder ``excluded``, the output of the run, is not listed. Raises UserError for a
+    list that cannot be read, and if there is no scan.
+    """
+    out = None if excluded is None else os.path.realpath(excluded)
+    found = list(dict.fromkeys(path for name in names for path in _scans(name, out)))
+    if not found:
+        raise UserError(
+            Message("No scans found."), Message("Specify scans, folders with scans, or a list as CSV.")
+        )
+    return found
+
+
+def printable_path(path: str) -> str:
+    """Return a path as text that every table can hold: bytes that are not letters are escaped."""
+    return os.fsencode(path).decode("utf-8", errors="backslashreplace")
+
+
+def file_digest(path: Path) -> str:
+    """Return the SHA-256 of a file in hexadecimal, empty if it cannot be read or is larger than any scan."""
+    with suppress(OSError, ValueError), open(open_regular(path), "rb") as file:
+        if os.fstat(file.fileno()).st_size <= LARGEST_FILE:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    return ""
+
+
+def _scans(name: str, out: str | None) -> Iterator[str]:
+    if os.path.isdir(name):
+        yield from _in_folder(name, out)
+    elif name.lower().endswith(".csv"):
+        yield from _listed(Path(name))
+    elif glob.has_magic(name) and not os.path.lexists(name):
+        for match in sorted(glob.glob(name, recursive=True)):
+            yield from _in_folder(match, out) if os.path.isdir(match) else [match]
+    else:
+        yield name
+
+
+def _in_folder(top: str, out: str | None) -> Iterator[str]:
+    """Yield the scans below a folder; a folder that links lead to again is read once."""
+    unreadable: list[str] = []
+    seen: set[str] = set()
+
+    def note(problem: OSError) -> None:
+        unreadable.append(str(problem.filename))
+
+    for folder, folders, files in os.walk(top, onerror=note, followlinks=True):
+        yield from unreadable
+        unreadable.clear()
+        place = os.path.realpath(folder)
+        if place in seen or place == out:
+            folders.clear()
+            continue
+        seen.add(place)
+        folders.sort()
+        yield from (os.path.join(folder, file) for file in sorted(files) if _is_scan(file))
+    yield from unreadable
+
+
+def _is_scan(name: str) -> bool:
+    return Path(name.lower().removesuffix(".gz")).suffix in _IN_FOLDERS
+
+
+def _listed(path: Path) -> Iterator[str]:
+    """Yield the scans of a list: its column "scan", or the first one; paths are relative to the list."""
+    try:
+        rows = list(csv.reader(read_text(path, _LARGEST_LIST, "utf-8-sig").splitlines()))
+    except (OSError, ValueError, csv.Error) as problem:
+        raise UserError(
+            Message("The list {file} cannot be read: {why}.", file=str(path), why=reason_of(problem)),
+            Message("Save it as CSV in UTF-8, with a column named scan."),
+        ) from problem
+    heading = [cell.strip().lower() for cell in rows[0]] if rows else []
+    column = heading.index("scan") if "scan" in heading else 0
+    for row in rows["scan" in heading :]:
+        if len(row) > column and row[column].strip():
+            yield os.path.join(path.parent, row[column].strip())

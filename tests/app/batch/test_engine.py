@@ -1,0 +1,86 @@
+"""Tasks on a cluster that is there already, and workers with another version of Busk."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from batch_tools import ROOT, lasting, parquet_rows, run_batch
+from distributed import Client
+
+from app.batch.batch_design import batch_design
+from app.batch.body_worker import Limits
+from app.batch.engine import Run, local_cluster
+from app.batch.one_body import compute_row, plain_row
+from app.batch.worker_plugin import BodyProcesses, compute_bodies
+from core import __version__
+from core.document.design import Design, ScanSource
+
+CLUSTER = """
+import sys
+from distributed import LocalCluster
+
+if __name__ == "__main__":
+    with LocalCluster(n_workers=1, threads_per_worker=2, dashboard_address="127.0.0.1:0") as cluster:
+        print(cluster.scheduler_address, flush=True)
+        sys.stdin.read()
+"""
+
+
+@pytest.fixture(scope="module")
+def scheduler(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """The address of a cluster with one worker of two threads, in another folder."""
+    folder = tmp_path_factory.mktemp("cluster")
+    (folder / "cluster.py").write_text(CLUSTER)
+    process = subprocess.Popen(
+        [sys.executable, "cluster.py"],
+        cwd=folder,
+        env={"PYTHONPATH": str(ROOT), "PATH": ""},
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+    )
+    assert process.stdout is not None
+    yield process.stdout.readline().strip()
+    process.communicate("", timeout=60)
+
+
+@pytest.mark.parametrize("ship", [[], ["--ship"]])
+def test_a_cluster_that_is_there_gives_the_same_rows(
+    scheduler: str, person: Path, mannequin: Path, tmp_path: Path, ship: list[str]
+) -> None:
+    words = ["--line", "mid-bust=-20mm", "--out", str(tmp_path), "--scheduler", scheduler, *ship]
+    code, _, errors = run_batch(person, mannequin, tmp_path / "none.ply", *words)
+    assert code == 3, errors
+    rows = {row["scan"]: row for row in parquet_rows(tmp_path)}
+    design = batch_design("design", Design(ScanSource("")), ["mid-bust=-20mm"], [], [])
+    for scan in (person, mannequin):
+        alone = plain_row(compute_row(design, scan).row)
+        found = lasting(rows[str(scan)])
+        assert {name: found[name] for name in alone} == alone
+    assert rows[str(tmp_path / "none.ply")]["state"] == "refused"
+
+
+def test_no_other_user_of_the_machine_can_use_the_workers_of_a_run() -> None:
+    with local_cluster(Run([], 1)) as cluster:
+        address = cluster.scheduler_address
+        assert address.startswith("tls://127.0.0.1:")
+        with pytest.raises(OSError):
+            Client(address.replace("tls:", "tcp:"), timeout="1s", set_as_default=False)
+
+
+def test_a_worker_of_another_version_computes_nothing() -> None:
+    assert compute_bodies("none", "0.0.1", [{"scan": "a"}]) == __version__
+    run = Run([], 1)
+    plugin = BodyProcesses("one", run.setup, Limits())
+    plugin._version = "0.0.1"
+
+    class Worker:
+        address = "tcp://host:1"
+
+    with pytest.raises(RuntimeError, match=r"0\.0\.1 here"):
+        plugin.setup(Worker())
