@@ -17,6 +17,7 @@ from core.document.elastic import Elastic
 from core.document.json_values import value_of
 from core.document.lower_trunk import LowerTrunk, lower_line_names
 from core.document.serialization import from_values, to_values
+from core.document.storage.project_file import is_project, open_project
 from core.errors import LineError
 from core.garment.line_requests import elastic_of, named, with_line_elastic
 from core.messages import Message
@@ -59,8 +60,20 @@ class BatchDesign:
         return tuple(name for name in known if name in active)
 
     def on_scan(self, path: Path) -> Design:
-        """Return the design on a scan, with the unit and axes of the run."""
-        return replace(self.design, scan=replace(self.design.scan, path=str(path)))
+        """Return the design on a scan, with the unit and axes of the run, or on the body of a project.
+
+        Of a project scan, edits, landmarks, customer and calibration are used. Raises UserError.
+        """
+        if not is_project(path):
+            return replace(self.design, scan=replace(self.design.scan, path=str(path)))
+        body = open_project(path).design
+        return replace(
+            self.design,
+            scan=body.scan,
+            placed=body.placed,
+            customer=body.customer,
+            calibration=body.calibration,
+        )
 
     def as_data(self) -> dict[str, Any]:
         """Return the design as values of JSON."""
@@ -100,7 +113,8 @@ def batch_design(
                 ),
             )
         chosen.append(LineElastic(line, elastic_of(elastic)))
-    return replace(found, elastics=tuple(chosen))
+    # As a worker reads it: the same design has the same key wherever it comes from.
+    return design_of_data(json.loads(json.dumps(replace(found, elastics=tuple(chosen)).as_data())))
 
 
 def _check_lines(design: BatchDesign) -> None:

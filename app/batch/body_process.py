@@ -1,12 +1,11 @@
 """A process that computes bodies one by one: requests and rows are lines of JSON.
 
 It is started by ``app.batch.body_worker``, which ends it when a body takes too long or too much memory. The
-first line holds the designs, each other one a body; it ends with its input.
+first line holds the designs and the wanted files, each other one a body; it ends with its input.
 """
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
 import queue
@@ -14,6 +13,7 @@ import sys
 import threading
 import time
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -21,6 +21,7 @@ import psutil
 from threadpoolctl import threadpool_limits
 
 from app.batch.batch_design import BatchDesign, design_of_data
+from app.batch.body_files import BodyFiles, Writer
 from app.batch.inputs import file_digest
 from app.batch.one_body import Row, compute_row, plain_row
 from app.batch.schema import CRASHED
@@ -29,43 +30,45 @@ from core.pipeline.build import Stages
 
 
 class BodyComputer:
-    """Computes rows of ``designs``; reshaped bodies go to the folder ``bodies``, if there is one."""
+    """Computes rows of ``designs`` and writes ``files``."""
 
-    def __init__(self, designs: list[BatchDesign], bodies: Path | None) -> None:
-        self._designs, self._bodies = designs, bodies
+    def __init__(self, designs: list[BatchDesign], files: BodyFiles) -> None:
+        self._designs, self._files = designs, files
         self._last: tuple[str, str] | None = None
         self._stages: Stages | None = None
 
     def answer(self, request: Mapping[str, Any]) -> Row:
-        """Return the whole row of a requested body: ``file`` is read, ``scan`` is what it is called."""
+        """Return the whole row of a requested body: ``file`` is read, ``scan`` is what it is called.
+
+        Its files are written below ``out`` if the request names it.
+        """
         start, path = time.perf_counter(), Path(request["file"])
         design, digest = self._designs[request["variant"]], file_digest(path)
         if self._last != (request["file"], digest):
             self._last, self._stages = (request["file"], digest), None
-        target = self._body_file(request["scan"], digest, design.name)
         try:
-            result = compute_row(design, path, self._stages, target)
-            self._stages, row = result.stages or self._stages, result.row
+            row = self._row(design, path, request)
         except Exception as problem:  # of one body: the run goes on
             why = f"{type(problem).__name__}: {problem}".rstrip(": ")
             row = {"state": CRASHED, "message": f"The computation failed ({why}). Check the scan."}
-        if target is not None and target.exists():
-            row["body_file"] = f"{target.parent.name}/{target.name}"
         row |= {"scan": request["scan"], "scan_sha256": digest, "variant": design.name}
         memory = psutil.Process().memory_info().rss / 1e6
         return plain_row(
             {**row, "seconds": time.perf_counter() - start, "memory_mb": memory, "busk_version": __version__}
         )
 
-    def _body_file(self, scan: str, digest: str, variant: str) -> Path | None:
-        if self._bodies is None or not digest:
-            return None
-        called = hashlib.sha256(f"{scan}\n{variant}".encode()).hexdigest()[:8]
-        stem = "".join(each if each.isalnum() else "_" for each in Path(scan).stem)[:40]
-        return self._bodies / f"{stem}-{called}.ply"
+    def _row(self, design: BatchDesign, path: Path, request: Mapping[str, Any]) -> Row:
+        result = compute_row(design, path, self._stages)
+        self._stages = result.stages or self._stages
+        if result.solution is None:
+            return result.row
+        files = replace(self._files, out=Path(request["out"])) if "out" in request else self._files
+        named = files.write(result.solution, request["scan"], design.name)
+        doubts = " ".join(filter(None, (result.row.get("doubts"), named.pop("doubts", ""))))
+        return {**result.row, **named, "doubts": doubts}
 
 
-def main() -> None:
+def serve(writers: Mapping[str, Writer]) -> None:
     """Answer requests until the input ends: also in the middle of a body, when the parent has gone."""
     answers = os.fdopen(os.dup(1), "w", encoding="ascii")
     os.dup2(2, 1)  # what libraries print must not be taken for an answer
@@ -73,7 +76,7 @@ def main() -> None:
     threading.Thread(target=_read, args=(sys.stdin, waiting), daemon=True).start()
     setup = json.loads(waiting.get())
     designs = [design_of_data(each) for each in setup["designs"]]
-    computer = BodyComputer(designs, Path(setup["bodies"]) if setup["bodies"] else None)
+    computer = BodyComputer(designs, BodyFiles(Path(setup["out"]), setup["files"], writers))
     _send(answers, {"busk_version": __version__})
     with threadpool_limits(1):
         while True:
@@ -89,7 +92,3 @@ def _read(requests: TextIO, waiting: queue.SimpleQueue[str]) -> None:
 def _send(answers: TextIO, values: Mapping[str, Any]) -> None:
     answers.write(json.dumps(values) + "\n")
     answers.flush()
-
-
-if __name__ == "__main__":
-    main()

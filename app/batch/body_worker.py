@@ -27,6 +27,9 @@ START_SECONDS = 120.0
 
 _POLL = 0.05  # seconds between two looks at memory and time
 
+_PROCESS = "app.cli.body_process"
+"""The module of the process, which also knows how reports are written."""
+
 _ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
 
@@ -70,7 +73,7 @@ def lost_row(request: Mapping[str, Any], message: str) -> Row:
 class BodyWorker:
     """Computes bodies in a process of its own, which is started anew when it is lost.
 
-    ``setup`` is its first line, as JSON: designs and the folder of bodies.
+    ``setup`` is its first line, as JSON: see ``app.batch.engine.Run``.
     """
 
     def __init__(self, setup: str, limits: Limits) -> None:
@@ -116,7 +119,7 @@ class BodyWorker:
             return
         # Without -P a file in the working folder could take the place of a library.
         self._process = subprocess.Popen(
-            [sys.executable, "-P", "-m", "app.batch.body_process"],
+            [sys.executable, "-P", "-m", _PROCESS],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,

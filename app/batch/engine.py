@@ -19,6 +19,7 @@ import dask
 from distributed import Client, Future, KilledWorker, LocalCluster, as_completed
 
 from app.batch.batch_design import BatchDesign
+from app.batch.body_files import unpacked_files
 from app.batch.body_worker import Limits, lost_row
 from app.batch.one_body import Row
 from app.batch.worker_plugin import BodyProcesses, compute_bodies
@@ -48,20 +49,21 @@ _ALL_LOST = "All workers that computed this body were lost. Check the cluster, t
 class Run:
     """What is run and where: on ``workers`` local processes, or on the cluster of a ``scheduler``.
 
-    Reshaped bodies are written to the folder ``bodies``, if there is one.
+    The ``files`` that are wanted of each body, with the manner of each kind, are written below ``out``.
     """
 
     designs: Sequence[BatchDesign]
     workers: int
     limits: Limits = field(default_factory=Limits)
     scheduler: str = ""
-    bodies: Path | None = None
+    out: Path = Path()
+    files: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def setup(self) -> str:
         """Return the first line of a process that computes bodies."""
-        bodies = str(self.bodies.absolute()) if self.bodies else None
-        return json.dumps({"designs": [each.as_data() for each in self.designs], "bodies": bodies})
+        designs = [each.as_data() for each in self.designs]
+        return json.dumps({"designs": designs, "out": str(self.out.absolute()), "files": dict(self.files)})
 
 
 def run_batch(run: Run, bodies: Iterable[Mapping[str, Any]]) -> Iterator[list[Row]]:
@@ -78,7 +80,8 @@ def run_batch(run: Run, bodies: Iterable[Mapping[str, Any]]) -> Iterator[list[Ro
         name = f"busk-bodies-{secrets.token_hex(4)}"
         _register(client, BodyProcesses(name, run.setup, run.limits))
         try:
-            yield from _results(client, name, chain([first], bodies))
+            for rows in _results(client, name, chain([first], bodies)):
+                yield [unpacked_files(row, run.out) for row in rows]
         finally:
             with suppress(Exception):  # of a scheduler that is gone
                 client.unregister_worker_plugin(name)

@@ -13,8 +13,9 @@ import numpy as np
 import pyarrow as pa
 
 from app.batch.batch_design import BatchDesign
+from app.batch.body_files import FOLDERS
 from app.batch.one_body import Row
-from app.batch.schema import DONE
+from app.batch.schema import DONE, columns_of
 
 MOST_ROWS = 20_000
 """Rows of the page: a browser shows no more with ease. The doubtful come first, the table has all."""
@@ -36,11 +37,14 @@ def index_page(table: pa.Table, designs: Sequence[BatchDesign]) -> str:
     marks = table.select(["state", "verdict", "doubts"]).to_pylist()
     ranked = sorted(range(len(marks)), key=lambda at: (marks[at]["state"] == DONE, -_doubt(marks[at])))
     rows = table.take(pa.array(ranked[:MOST_ROWS], pa.int64())).to_pylist()
-    columns = _columns(rows)
+    columns = [name for name in _columns(rows) if name != "variant" or len(designs) > 1]
+    units = {each.name: each.unit for each in columns_of(designs)}
     values = {
         "columns": columns,
+        "labels": [label_of(name, units[name]) for name in columns],
+        "units": [units[name] for name in columns],
         "rows": [[_short(row.get(name)) for name in columns] for row in rows],
-        "files": [row.get("body_file") or "" for row in rows],
+        "files": [{kind: row.get(f"{kind}_file") or "" for kind in FOLDERS} for row in rows],
     }
     # "<" would end the script wherever a name of a file says so.
     data = json.dumps(values, ensure_ascii=False).replace("<", "\\u003c")
@@ -50,12 +54,21 @@ def index_page(table: pa.Table, designs: Sequence[BatchDesign]) -> str:
         "variants": escape(", ".join(each.name for each in designs)),
         "counts": escape(_counts(marks)),
         "note": note,
-        "plots": "".join(_plot(name, table) for name in columns if name.startswith(_PLOTTED)),
+        "plots": "".join(_plot(name, units[name], table) for name in columns if name.startswith(_PLOTTED)),
         "data": data,
     }
     for name, text in parts.items():
         page = page.replace(f"<!--{name}-->", text)
     return page
+
+
+def label_of(name: str, unit: str) -> str:
+    """Return the name of a column as words, without its ``unit``."""
+    stem = name.rpartition("_")[0] if unit else name
+    words = stem.replace("_", " ").replace("underbust", "under-bust")
+    words = words.removesuffix(" eu") + " (EU)" if words.endswith(" eu") else words
+    words = words.removesuffix(" jp") + " (JP)" if words.endswith(" jp") else words
+    return words[:1].upper() + words[1:]
 
 
 def _doubt(row: Row) -> int:
@@ -77,7 +90,7 @@ def _counts(rows: Sequence[Row]) -> str:
     return ", ".join(f"{count} {word}" for word, count in sorted(Counter(words).items())) or "no rows"
 
 
-def _plot(name: str, table: pa.Table) -> str:
+def _plot(name: str, unit: str, table: pa.Table) -> str:
     """Return the distribution of a column as SVG with its mean and standard deviation, empty without one."""
     values = table.column(name).drop_null().to_numpy()
     if len(values) < 2 or np.ptp(values) == 0.0:
@@ -90,6 +103,7 @@ def _plot(name: str, table: pa.Table) -> str:
     )
     low, high = (f"{edge:.4g}" for edge in edges[[0, -1]])
     ends = f'<text x="0" y="74">{low}</text><text x="200" y="74" text-anchor="end">{high}</text>'
-    title = f"{escape(name)}: mean {values.mean():.4g}, standard deviation {values.std(ddof=1):.3g}"
-    picture = f'<svg viewBox="0 0 200 78" role="img" aria-label="{title}">{bars}{ends}</svg>'
-    return f"<figure>{picture}<figcaption>{title}</figcaption></figure>"
+    title = f"{escape(label_of(name, unit))} [{escape(unit)}]"
+    about = f"mean {values.mean():.4g}, SD {values.std(ddof=1):.3g}"
+    picture = f'<svg viewBox="0 0 200 78" role="img" aria-label="{title}: {about}">{bars}{ends}</svg>'
+    return f"<figure><figcaption>{title}</figcaption>{picture}<p>{about}</p></figure>"

@@ -10,13 +10,14 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 
+from core.document.storage.project_file import SUFFIX
 from core.errors import UserError, reason_of
 from core.files.regular_file import open_regular, read_text
 from core.messages import Message
 from core.scan.readers.registry import FORMATS, LARGEST_FILE
 
-_IN_FOLDERS = {f".{kind}" for kind in FORMATS} - {".gz", ".txt", ".csv"}
-"""Endings of scans in folders: texts and tables are scans only where they are named."""
+_IN_FOLDERS = {*(f".{kind}" for kind in FORMATS), SUFFIX} - {".gz", ".txt", ".csv"}
+"""Endings of scans and projects in folders: texts and tables are scans only where they are named."""
 
 _LARGEST_LIST = 200_000_000  # bytes of a list of scans
 

@@ -14,7 +14,6 @@ from app.presenters.pattern import piece_rows, seam_rows
 from core.analysis.inverse_design.line_selection import LineSelection
 from core.analysis.inverse_design.target_requests import absolute, changes_of, goals_of
 from core.errors import PatternError, UserError
-from core.export.mesh import write_mesh
 from core.export.report_data import lift_of
 from core.garment.assessment import assess_with
 from core.garment.cut_list import CutList, cut_list_of
@@ -36,19 +35,19 @@ Row = dict[str, Any]
 
 @dataclass(frozen=True)
 class BodyResult:
-    """The ``row`` of a body, and its ``stages``, with which another variant of it is computed faster."""
+    """The ``row`` of a body, its ``stages``, with which another variant of it is computed faster, and its
+    ``solution``, None for a body that is refused.
+    """
 
     row: Row
     stages: Stages | None
+    solution: Solution | None
 
 
-def compute_row(
-    design: BatchDesign, scan: Path, previous: Stages | None = None, body_file: Path | None = None
-) -> BodyResult:
+def compute_row(design: BatchDesign, scan: Path, previous: Stages | None = None) -> BodyResult:
     """Compute the row of a scan; a body that is refused has the reason as its message.
 
-    ``previous`` are stages of the same scan; the reshaped body is written to ``body_file``, if there is one.
-    Results do not depend on ``previous``.
+    ``previous`` are stages of the same scan; results do not depend on them.
     """
     stages, solution = None, None
     row: Row = {"state": DONE}
@@ -57,13 +56,12 @@ def compute_row(
         placed, row = _with_lengths(stages, design, row)
         solution = _solved(placed)
         row |= _values(solution)
-        if body_file is not None:
-            write_mesh(body_file, solution.body)
     except UserError as problem:
         row |= {"state": REFUSED, "message": str(problem)}
         if stages is not None and solution is None:
             row |= _original(stages)
-    return BodyResult(row, stages)
+        solution = None
+    return BodyResult(row, stages, solution)
 
 
 def _with_lengths(stages: Stages, design: BatchDesign, row: Row) -> tuple[Stages, Row]:

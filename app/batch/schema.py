@@ -65,7 +65,11 @@ HEAD = (
 """Columns that every table begins with."""
 
 TAIL = (
-    *_texts(("body_file", "File of the reshaped body in the output folder, if requested")),
+    *_texts(
+        ("picture_file", "File of the picture in the output folder"),
+        ("body_file", "File of the reshaped body in the output folder, if requested"),
+        ("report_file", "File of the report in the output folder, if requested"),
+    ),
     *_numbers("s", ("seconds", "Computing time")),
     *_numbers("MB", ("memory_mb", "Memory in use after the computation")),
     *_texts(("busk_version", "Version of Busk that computed the row")),

@@ -10,6 +10,7 @@ from typing import Any
 
 from distributed import Worker, WorkerPlugin, get_worker
 
+from app.batch.body_files import packed_files
 from app.batch.body_worker import BodyWorker, Limits
 from app.batch.one_body import Row
 from core import __version__
@@ -59,9 +60,12 @@ def _computed(process: BodyWorker, body: Mapping[str, Any]) -> Row:
     if data is None:
         return process.compute(request)
     with tempfile.TemporaryDirectory(prefix="busk-") as folder:
-        place = Path(folder) / (os.path.basename(body["file"]) or "scan")
+        place = Path(folder) / "in" / (os.path.basename(body["file"]) or "scan")
+        place.parent.mkdir()
         place.write_bytes(data)
-        return process.compute({**request, "file": str(place)})
+        out = Path(folder) / "out"  # a worker may have no file system in common with the command
+        out.mkdir()
+        return packed_files(process.compute({**request, "file": str(place), "out": str(out)}), out)
 
 
 def compute_bodies(name: str, version: str, bodies: Sequence[Mapping[str, Any]]) -> list[Row] | str:

@@ -55,7 +55,7 @@ def _samples(places: Points, normals: Points, mesh: Mesh, grain: float) -> tuple
     steps = np.maximum(np.ceil(1.5 * longest / grain), 1.0)
     crowd = 0.5 * float((steps**2).sum()) / MOST_TRIANGLES
     steps = np.ceil(steps / max(crowd, 1.0) ** 0.5).astype(int)
-    for count in np.unique(steps):
+    for count in np.unique(steps[steps > 1]):  # of a smaller triangle the corners are enough
         chosen = faces[steps == count]
         u, v = (grid.ravel() / count for grid in np.meshgrid(np.arange(count + 1), np.arange(count + 1)))
         mix = np.stack([1.0 - u - v, u, v], axis=1)[u + v <= 1.0 + 1e-9]

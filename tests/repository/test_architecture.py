@@ -27,6 +27,7 @@ LIBRARIES = {
     "app.presenters": {"numpy"},
     "app.research": SCENE | {"matplotlib", "PIL", "threadpoolctl", "trimesh"},
     "app.batch": {"threadpoolctl", "psutil"},
+    "app.batch.body_files": {"numpy", "PIL"},
     "app.batch.engine": {"dask", "distributed"},
     "app.batch.worker_plugin": {"distributed"},
     "app.batch.index_page": {"numpy", "pyarrow"},

@@ -35,7 +35,8 @@ if TYPE_CHECKING:
     from app.batch.store import ResultStore
 
 SCANS_HELP = (
-    "scans, folders with scans in them, patterns such as 'scans/*.ply', or a list as CSV with a column scan"
+    "scans or projects, folders with them, patterns such as 'scans/*.ply', or a list as CSV with a column "
+    "scan"
 )
 DESIGN_HELP = (
     "a project, a preset by title or unique words, or a preset file; of a project everything but scan, "
@@ -54,6 +55,9 @@ def add_options(parser: ArgumentParser) -> None:
     parser.add_argument("--target", action="append", metavar="NAME=VALUE", help=TARGET_HELP)
     add_folder_output(parser)
     parser.add_argument("--body", action="store_true", help="write the reshaped bodies (PLY)")
+    report = "write a report (PDF) of each body, in this language (default: en); takes seconds a body"
+    parser.add_argument("--report", nargs="?", const="en", choices=("en", "ja"), help=report)
+    parser.add_argument("--no-pictures", action="store_true", help="write no picture of each body")
     parser.add_argument("--json", action="store_true", help="print progress and summary as lines of JSON")
     parser.add_argument(
         "--restart", action="store_true", help="remove the results in the output folder first"
@@ -103,8 +107,7 @@ def _run(options: Namespace, scans: list[str], store: ResultStore, progress: Pro
     from app.batch.engine import Run, run_batch  # noqa: PLC0415 (Dask is loaded for a run alone)
 
     limits = Limits(options.timeout, options.memory)
-    bodies = make_folder(str(Path(options.out) / "bodies")) if options.body else None
-    run = Run(store.designs, options.workers, limits, options.scheduler, bodies)
+    run = Run(store.designs, options.workers, limits, options.scheduler, Path(options.out), _files(options))
     pending = pending_bodies(scans, store, progress.skip, ship=options.ship, retry=options.retry)
     interrupted = True
     try:
@@ -117,6 +120,12 @@ def _run(options: Namespace, scans: list[str], store: ResultStore, progress: Pro
         summary = store.finish(order, progress.seconds, interrupted=interrupted)
         progress.end(summary, options.out)
     return ALL_DONE if summary["rows"] == summary["states"][DONE] else NOT_CONVERGED
+
+
+def _files(options: Namespace) -> dict[str, str]:
+    """Return the kinds of files that are wanted of each body, with the manner of each."""
+    wanted = {"picture": not options.no_pictures, "body": options.body, "report": options.report}
+    return {kind: options.report if kind == "report" else "" for kind, on in wanted.items() if on}
 
 
 def _store(options: Namespace, designs: Sequence[BatchDesign]) -> ResultStore:

@@ -100,8 +100,13 @@ def write_report(
     if how.customer is not None:
         design = replace(design, customer=how.customer)
     solved = solve_design(design, lines, elastics, bare=True)
-    solution = solved.solution
-    sheet = make_report(solution, solution.records, _heading(source, design, how))
+    sheet, faults = write_report_of(solved.solution, _heading(source, design, how), how)
+    return solved, [*dict.fromkeys(map(str, (*solved.warnings, *sheet.doubts, *sheet.warnings))), *faults]
+
+
+def write_report_of(solution: Solution, heading: Heading, how: ReportOptions) -> tuple[Report, list[str]]:
+    """Write the report of a solution, and return it with the faults of its PDF. Raises UserError."""
+    sheet = make_report(solution, solution.records, heading)
     if how.uncertainty:
         sheet = with_uncertainty(
             sheet, solution.stages, solution.control_points, estimate_uncertainty(solution.stages)
@@ -109,8 +114,7 @@ def write_report(
     for name, text, code in ((how.json, report_json, "utf-8"), (how.csv, report_csv, ENCODING)):
         if name:
             write_text(Path(name), text(sheet), code)
-    faults = _write(solution, sheet, how)
-    return solved, [*dict.fromkeys(map(str, (*solved.warnings, *sheet.doubts, *sheet.warnings))), *faults]
+    return sheet, _write(solution, sheet, how)
 
 
 def _check(how: ReportOptions) -> None:

@@ -39,7 +39,9 @@ def test_a_design_is_read_from_json_as_it_was(preset: str) -> None:
     design = with_preset(BARE, find_preset(preset))
     line = next(iter(sorted(design.all_active_lines())))
     whole = batch_design(preset, design, [f"{line}=95%"], [f"{line}=plush 12"], ["lift=5mm"])
-    assert design_of_data(json.loads(json.dumps(whole.as_data()))) == whole
+    again = design_of_data(json.loads(json.dumps(whole.as_data())))
+    assert again == whole
+    assert content_key([again]) == content_key([whole])
 
 
 def test_the_key_depends_on_every_part_of_the_design() -> None:

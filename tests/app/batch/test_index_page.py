@@ -44,7 +44,7 @@ def test_the_doubtful_come_first(page: str) -> None:
     scans = [each[values["columns"].index("scan")] for each in values["rows"]]
     assert scans[:2] == [HOSTILE, "bad.ply"]
     assert len(scans) == 7
-    assert values["files"][1] == "bodies/bad.ply"
+    assert values["files"][1] == {"body": "bodies/bad.ply", "picture": "", "report": ""}
     assert "1 bad, 5 good, 1 refused" in page
 
 
@@ -57,7 +57,7 @@ def test_nothing_comes_from_elsewhere_or_from_a_name(page: str) -> None:
 
 
 def test_distributions_have_mean_and_bars(page: str) -> None:
-    figure = re.search(r"<figure>.*?bust_mm: mean (\S+),.*?</figure>", page)
+    figure = re.search(r"<figure><figcaption>Bust \[mm\]</figcaption>.*?mean (\S+),.*?</figure>", page)
     assert figure is not None
     assert float(figure[1]) == pytest.approx((4100.0 + 950.0) / 6.0, abs=0.1)
     heights = [float(each) for each in re.findall(r'height="([\d.]+)"', figure[0])]

@@ -15,6 +15,7 @@ import pytest
 
 from app.batch.batch_design import BatchDesign, batch_design
 from app.batch.body_worker import BodyWorker, Limits
+from app.batch.engine import Run
 from app.batch.one_body import compute_row
 from app.batch.schema import columns_of
 from app.cli.main import main
@@ -26,7 +27,7 @@ DESIGN = batch_design("one", Design(ScanSource("")), LINES, ELASTICS, [])
 
 
 def setup_of(*designs: BatchDesign) -> str:
-    return json.dumps({"designs": [each.as_data() for each in designs], "bodies": None})
+    return Run(designs, 1).setup
 
 
 def request(scan: Path, variant: int = 0) -> dict[str, Any]:

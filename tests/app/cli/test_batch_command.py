@@ -11,12 +11,14 @@ import signal
 import subprocess
 import time
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
 import psutil
 import pytest
 from batch_tools import csv_rows, lasting, parquet_rows, run_batch, start_batch, summary
 from damaged_files import damaged_file
+from pdf_tools import Pdf
 
 from app.cli.main import BAD_INPUT, INTERRUPTED, main
 from app.cli.output import DONE, NOT_CONVERGED
@@ -24,6 +26,9 @@ from core.document.design import Design, ScanSource
 from core.document.document import Document
 from core.document.lines import ActiveLine
 from core.document.storage.project_file import ScanFile, save_project
+from core.landmarks.manual import placed_mark
+from core.measurements.table import measures
+from core.pipeline.build import build
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="signals and links are those of POSIX")
 LINES = ["--line", "mid-bust=-20mm", "--elastic", "mid-bust=plush 12"]
@@ -104,11 +109,34 @@ def test_results_do_not_depend_on_workers_nor_on_shipping(
 ) -> None:
     words = [hostile / "anna.ply", hostile / "名前.ply", hostile / "junk.obj"]
     run_batch(*words, *LINES, "--out", tmp_path, "--workers", "1", "--ship", "--body")
+    for name in ("pictures", "bodies"):
+        files = sorted((tmp_path / name).iterdir())
+        assert len(files) == 2
+        assert all(file.read_bytes() == (on_two[0] / name / file.name).read_bytes() for file in files)
     whole = {row["scan"]: lasting(row) for row in parquet_rows(on_two[0])}
     rows = parquet_rows(tmp_path)
     assert len(rows) == 3
     for row in rows:
         assert lasting(row) == whole[row["scan"]]
+
+
+def test_a_project_is_a_body_with_its_landmarks_and_has_a_report(person: Path, tmp_path: Path) -> None:
+    scans, out = tmp_path / "scans", tmp_path / "out"
+    scans.mkdir()
+    moved = placed_mark("bust_point_left=85,-270,255")
+    design = Design(ScanSource("anna.ply"), placed=(moved,), customer="Anna")
+    scan = ScanFile("anna.ply", person.read_bytes())
+    save_project(scans / "anna.busk", Document.single(design), scan, None)
+    shutil.copy(person, scans)
+    words = ["--line", "mid-bust=95%", "--out", out, "--workers", "1", "--report", "ja"]
+    code, _, _ = run_batch(scans, *words)
+    rows = {os.path.basename(row["scan"]): row for row in parquet_rows(out)}
+    assert code == DONE
+    assert set(rows) == {"anna.busk", "person.ply"}
+    stages = build(replace(design, scan=ScanSource(str(person))))
+    placed = measures(stages.body.smoothed, stages.landmarks)
+    assert rows["anna.busk"]["bust_mm"] == placed["bust_girth"].value != rows["person.ply"]["bust_mm"]
+    assert "Anna" in Pdf(out / rows["anna.busk"]["report_file"]).text()
 
 
 def test_a_project_and_a_preset_are_variants(person: Path, tmp_path: Path) -> None:
