@@ -7,9 +7,10 @@ import logging
 import secrets
 import signal
 import time
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import chain, islice
 from multiprocessing import resource_tracker
 from pathlib import Path
@@ -27,20 +28,23 @@ from core import __version__
 from core.errors import UserError
 from core.messages import Message
 
-TASKS_A_WORKER = 2
-"""Tasks in flight for each worker: one that runs and one that waits, however many bodies there are."""
+TASKS_A_PROCESS = 2
+"""Tasks in flight for each process, which is a thread of a worker: one that runs and one that waits."""
 
 RECOUNT_SECONDS = 5.0
-"""Workers are counted so often [s]: a cluster may grow and shrink."""
+"""Processes are counted so often [s]: a cluster may grow and shrink."""
 
-WORKERS_A_BODY = 64
-"""A task has one body for so many workers, and at most MOST_BODIES: the scheduler keeps up with thousands."""
+PROCESSES_A_BODY = 128
+"""A task has one body for so many processes, at most MOST_BODIES: the scheduler keeps up with thousands."""
 
 MOST_BODIES = 16
 
 TRIES = 5
 """A task whose workers were lost so often is given up; Dask itself repeats each some times."""
 
+
+Work = Callable[[Sequence[Mapping[str, Any]]], list[Row] | str]
+"""What a task does: rows of bodies, or the version of Busk on the worker if it is another one."""
 
 _ALL_LOST = "All workers that computed this body were lost. Check the cluster, then use --retry."
 
@@ -80,39 +84,45 @@ def run_batch(run: Run, bodies: Iterable[Mapping[str, Any]]) -> Iterator[list[Ro
         name = f"busk-bodies-{secrets.token_hex(4)}"
         _register(client, BodyProcesses(name, run.setup, run.limits))
         try:
-            for rows in _results(client, name, chain([first], bodies)):
+            work = partial(compute_bodies, name, __version__)
+            for rows in results(client, work, chain([first], bodies)):
                 yield [unpacked_files(row, run.out) for row in rows]
         finally:
             with suppress(Exception):  # of a scheduler that is gone
                 client.unregister_worker_plugin(name)
 
 
-def _results(client: Client, name: str, bodies: Iterator[Mapping[str, Any]]) -> Iterator[list[Row]]:
+def results(client: Client, work: Work, bodies: Iterator[Mapping[str, Any]]) -> Iterator[list[Row]]:
+    """Yield the rows that ``work`` computes of ``bodies``, in the order in which tasks end.
+
+    Raises UserError if a worker has another version of Busk.
+    """
     tries: dict[Future, tuple[list[Mapping[str, Any]], int]] = {}
-    running = as_completed(loop=client.loop)
+    # Results come while others are read: one after the other, 1,000 processes wait for the way of each.
+    running = as_completed(loop=client.loop, with_results=True, raise_errors=False)
 
     def submit(task: list[Mapping[str, Any]], tried: int = 0) -> None:
-        future = client.submit(compute_bodies, name, __version__, task, pure=False)
+        future = client.submit(work, task, pure=False)
         tries[future] = task, tried
         running.add(future)
 
-    workers, counted = 1, -RECOUNT_SECONDS
+    processes, counted = 1, -RECOUNT_SECONDS
 
     def refill() -> None:
-        nonlocal workers, counted
+        nonlocal processes, counted
         if time.monotonic() - counted >= RECOUNT_SECONDS:
-            workers, counted = max(len(client.nthreads()), 1), time.monotonic()
-        size = min(max(workers // WORKERS_A_BODY, 1), MOST_BODIES)
-        while len(tries) < TASKS_A_WORKER * workers and (task := list(islice(bodies, size))):
+            processes, counted = max(sum(client.nthreads().values()), 1), time.monotonic()
+        size = min(max(processes // PROCESSES_A_BODY, 1), MOST_BODIES)
+        while len(tries) < TASKS_A_PROCESS * processes and (task := list(islice(bodies, size))):
             submit(task)
 
     refill()
     while tries:
-        future = next(running)
+        future, rows = next(running)
         task, tried = tries.pop(future)
-        try:
-            rows = future.result()
-        except KilledWorker:
+        if future.status != "finished":
+            if not isinstance(error := future.exception(), KilledWorker):
+                raise error
             if tried + 1 < TRIES:
                 submit(task, tried + 1)
                 continue
