@@ -15,9 +15,15 @@ from core.geometry.geodesic import shortest_path
 from core.geometry.mesh import Points
 from core.geometry.plane_sections import arc_length, interpolate, resample
 from core.pattern.places import BodyPlaces
+from core.pattern.surface_trace import SNAP
 
 STEP = 3.0
 """Distance between the places of a curve [mm]."""
+
+CENTRES = (0.0, 1.0)
+"""The shares of a half round at the front and the back centre [1]."""
+
+_CLEFT = 25.0  # the places of both halves of a ring in a cleft are no further apart [mm]
 
 _MOST_WAYS = 400  # between two places that are kept
 
@@ -65,6 +71,8 @@ class SeamDrawing:
                 points = former.get(key)
                 if points is None:
                     points = self._laid(self._drawn(seam, side, levels, drawn))
+                    if seam.kind == RING and side == "right":
+                        points = _joined(points, drawn[f"{seam.name} left"], seam.span)
                 self._curves[key] = drawn[name] = points
                 found.append(SeamCurve(seam, side, points))
         return tuple(found)
@@ -110,6 +118,17 @@ class SeamDrawing:
         """Return a curve evenly divided, on the skin; its ends stay."""
         even = resample(points, STEP)
         return nearest_faces(self.places.skin, even, self.places.skin.centroid_tree)[1]
+
+
+def _joined(ring: Points, left: Points, span: tuple[float, float]) -> Points:
+    """Return the right half of a ``ring`` with its ends at the centre where the ``left`` half has them.
+
+    In a steep cleft the places of both halves at the centre are on opposite walls.
+    """
+    for end in (0, -1):
+        if span[end] in CENTRES and SNAP <= np.linalg.norm(ring[end] - left[end]) < _CLEFT:
+            ring = np.insert(ring, len(ring) if end else 0, left[end], axis=0)
+    return ring
 
 
 _Key = tuple[object, ...]

@@ -9,8 +9,9 @@ import numpy as np
 
 from core.errors import PatternError
 from core.geometry.closest_point import barycentric, nearest_faces
-from core.geometry.mesh import Floats, Indices, Mesh, Points, unit
+from core.geometry.mesh import Flags, Floats, Indices, Mesh, Points, unit
 from core.messages import Message
+from core.pattern.triangle_strips import Strip, shortest_strip
 
 SNAP = 4.0
 """An end within this distance of another curve is put on it [mm]. Source: ours."""
@@ -22,6 +23,11 @@ _INSIDE = 1e-3
 """Samples keep this distance from the edges of their triangle [1]: the search for a way then ends in it."""
 
 _MOST_STEPS = 2000
+
+_DETOUR = 10.0
+"""A step may be so much longer over the skin than twice straight on [mm]; else it is astray. Source: ours."""
+
+_FLIPPED = 8  # samples at most that were put on the opposite wall of a cleft
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +78,9 @@ def trace_curves(mesh: Mesh, curves: tuple[SurfaceCurve, ...]) -> Traces:
     """Follow ``curves`` over ``mesh``.
 
     An end within ``SNAP`` of another curve is put on it. Between two points a curve is where the plane
-    through both that is square to the skin cuts it. Raises PatternError where the skin does not connect them.
+    through both that is square to the skin cuts it, or, where that leads round the body, the shortest path.
+    Points beside the opposite wall of a cleft are left out. Raises PatternError where the skin does not
+    connect them.
     """
     joined, nodes = _join_ends(curves)
     ends = np.cumsum([len(points) for points in joined])
@@ -85,14 +93,60 @@ def trace_curves(mesh: Mesh, curves: tuple[SurfaceCurve, ...]) -> Traces:
     first, shared = np.flatnonzero(node >= 0)[first], np.flatnonzero(node >= 0)
     face[shared], shares[shared] = face[first[node[shared]]], shares[first[node[shared]]]
     place = np.einsum("ij,ijk->ik", shares, mesh.vertices[mesh.faces[face]])
-    crossings = _walk(mesh, mesh.face_neighbours, face, place, np.delete(np.arange(len(face)), ends - 1))
+    samples = _Samples(face, place, node, ends)
+    crossings, astray = _follow(mesh, samples)
+    if (flipped := samples.between(astray)).any():
+        fewer = samples.without(flipped)
+        again, still = _follow(mesh, fewer)
+        if len(still) < len(astray):
+            samples, crossings = fewer, again
     if len(crossings.lost):
-        lost = curves[int(np.searchsorted(ends, crossings.lost[0], side="right"))]
+        lost = curves[int(np.searchsorted(samples.ends, crossings.lost[0], side="right"))]
         raise PatternError(
             Message('The skin cannot be followed along the curve "{name}".', name=lost.name),
             Message("Add a point to it, or keep it off holes and loose parts of the scan."),
         )
-    return Traces(_stations(crossings, node, face, ends), face[first], shares[first])
+    return Traces(_stations(crossings, samples), face[first], shares[first])
+
+
+@dataclass(frozen=True, eq=False)
+class _Samples:
+    """Points of all curves, each curve's before the next of ``ends``: triangle, ``place`` (g, 3) [mm], node.
+
+    ``node`` is -1 for a point that is none.
+    """
+
+    face: Indices
+    place: Points
+    node: Indices
+    ends: Indices
+
+    @property
+    def steps(self) -> Indices:
+        """Return the samples from which a curve goes on to the next one."""
+        return np.delete(np.arange(len(self.face)), self.ends - 1)
+
+    def between(self, astray: Indices) -> Flags:
+        """Return which samples, no nodes, are between two steps of a curve that are ``astray``, (g,).
+
+        Few of them were put on the opposite wall of a cleft: the way to it is astray, and the way back.
+        """
+        found: Flags = np.zeros(len(self.face), dtype=bool)
+        curve = np.searchsorted(self.ends, astray, side="right")
+        open_at = -1
+        for at in range(len(astray)):
+            is_pair = open_at >= 0 and curve[open_at] == curve[at]
+            if is_pair and astray[at] - astray[open_at] <= _FLIPPED:
+                found[astray[open_at] + 1 : astray[at] + 1] = True
+                open_at = -1
+            else:
+                open_at = at
+        return found & (self.node < 0)
+
+    def without(self, rows: Flags) -> _Samples:
+        """Return the samples but those of the ``rows`` (g,)."""
+        ends = self.ends - np.cumsum(rows)[self.ends - 1]
+        return _Samples(self.face[~rows], self.place[~rows], self.node[~rows], ends)
 
 
 def _join_ends(curves: tuple[SurfaceCurve, ...]) -> tuple[list[Points], list[Indices]]:
@@ -173,6 +227,53 @@ class _Crossings:
     face: Indices
     lost: Indices
 
+    def through(self, sample: int, strip: Strip) -> _Crossings:
+        """Return the same with the way from a ``sample`` to the next one through a ``strip``."""
+        kept, count = self.sample != sample, len(strip.face)
+        return _Crossings(
+            np.append(self.sample[kept], np.full(count, sample)),
+            np.append(self.number[kept], np.arange(count)),
+            np.append(self.low[kept], strip.low),
+            np.append(self.high[kept], strip.high),
+            np.append(self.share[kept], strip.share),
+            np.append(self.face[kept], strip.face),
+            self.lost[self.lost != sample],
+        )
+
+
+def _follow(mesh: Mesh, samples: _Samples) -> tuple[_Crossings, Indices]:
+    """Walk from sample to sample; return also the steps that are astray over the skin, or lost.
+
+    Along the bottom of a cleft a plane may lead round the body: there the shortest path is taken.
+    """
+    found = _walk(mesh, mesh.face_neighbours, samples.face, samples.place, samples.steps)
+    lengths, astray = _astray(mesh, found, samples.place)
+    for number, length in zip(astray.tolist(), lengths.tolist(), strict=True):
+        pair = slice(number, number + 2)
+        one, two = samples.face[pair].tolist()
+        strip = shortest_strip(mesh, (one, two), samples.place[pair])
+        if strip is not None and strip.length < 0.5 * length:
+            found = found.through(number, strip)
+    return found, _astray(mesh, found, samples.place)[1]
+
+
+def _astray(mesh: Mesh, crossings: _Crossings, place: Points) -> tuple[Floats, Indices]:
+    """Return how long the steps that are astray are over the skin [mm], and from which samples they go."""
+    order = np.lexsort([crossings.number, crossings.sample])
+    sample, low, high = (column[order] for column in (crossings.sample, crossings.low, crossings.high))
+    way = mesh.vertices[high] - mesh.vertices[low]
+    at = mesh.vertices[low] + crossings.share[order][:, None] * way
+    is_first = np.append(True, np.diff(sample) != 0)[: len(sample)]
+    from_last = at - np.where(is_first[:, None], place[sample], np.roll(at, 1, axis=0))
+    along = np.linalg.norm(from_last, axis=1)
+    length: Floats = np.bincount(sample, along, len(place) - 1).astype(np.float64)
+    is_last = np.roll(is_first, -1)
+    length[sample[is_last]] += np.linalg.norm(place[sample[is_last] + 1] - at[is_last], axis=1)
+    length[crossings.lost] = np.inf
+    straight = np.linalg.norm(np.diff(place, axis=0), axis=1)
+    astray = np.flatnonzero(length > 2.0 * straight + _DETOUR)
+    return length[astray], np.asarray(astray)
+
 
 def _walk(mesh: Mesh, neighbours: Indices, face: Indices, place: Points, sample: Indices) -> _Crossings:
     """Walk from each of the points ``sample`` (g,) to the next, all at once, a triangle a step."""
@@ -212,8 +313,9 @@ def _walk(mesh: Mesh, neighbours: Indices, face: Indices, place: Points, sample:
     return _Crossings(samples, numbers, lows, highs, shares, faces, np.sort(np.concatenate([*lost, sample])))
 
 
-def _stations(crossings: _Crossings, node: Indices, face: Indices, ends: Indices) -> tuple[Trace, ...]:
-    """Put crossings and nodes of all curves in order; the samples of each end before those of ``ends``."""
+def _stations(crossings: _Crossings, samples: _Samples) -> tuple[Trace, ...]:
+    """Put crossings and nodes of all curves in order."""
+    node, face, ends = samples.node, samples.face, samples.ends
     nodes = np.flatnonzero(node >= 0)
     sample = np.concatenate([nodes, crossings.sample])
     order = np.lexsort([np.concatenate([np.full(len(nodes), -1), crossings.number]), sample])

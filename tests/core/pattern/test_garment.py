@@ -13,6 +13,7 @@ from whole_trunk import trunk_stages
 from core.document.block import without_side
 from core.errors import PatternError
 from core.export.pattern_data import seam_values
+from core.geometry.mesh import Mesh
 from core.landmarks.types import SIDES
 from core.pattern.allowance import cut_piece
 from core.pattern.block_library import built_in_blocks, find_block
@@ -216,3 +217,29 @@ def test_a_grain_line_is_rotated_as_its_mirror_image_on_the_right(built: Built) 
         slopes[flat.panel.name] = np.degrees(np.arctan2(slope, height))
     assert slopes["cup left"] == pytest.approx(-slopes["cup right"], abs=8.0)
     assert abs(slopes["cup left"]) > 15.0
+
+
+def with_overlapping_walls(places: BodyPlaces) -> BodyPlaces:
+    """The body with a cleft that closes: its walls go through each other, as on scans of full buttocks."""
+    skin = places.skin
+    x, y, z = (skin.vertices - [places.middle, 0.0, 0.0]).T
+    across = skin.vertex_normals[:, 0]
+    in_cleft = (np.abs(x) < 15.0) & (np.abs(across) > 0.5) & (z < 20.0) & (y > -70.0) & (across * x < 0.0)
+    vertices = skin.vertices.copy()
+    vertices[in_cleft, 0] += np.where(in_cleft, np.sign(across) * (np.abs(x) + 1.0), 0.0)[in_cleft]
+    return replace(places, skin=Mesh(vertices, skin.faces))
+
+
+@pytest.mark.parametrize("overlaps", [False, True])
+def test_the_centre_back_of_a_bodysuit_runs_along_the_cleft(overlaps: bool) -> None:
+    places = BodyPlaces.of(trunk_stages())
+    if overlaps:
+        places = with_overlapping_walls(places)
+    garment = cut_garment(SeamDrawing(places), find_block("bodysuit-princess"))
+    for panel in garment.panels[-2:]:
+        sides = [side for side in panel.sides if side.name == "centre back"]
+        assert len(sides) == 1, panel.name
+        x = panel.places(places.skin.vertices)[sides[0].points, 0]
+        np.testing.assert_allclose(x, places.middle, atol=4.0)
+    areas = [panel.covers for panel in garment.panels[-2:]]
+    assert areas[0] == pytest.approx(areas[1], rel=0.05)

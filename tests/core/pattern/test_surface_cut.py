@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from curved_patches import ball, circle, meridian, on_ball
+from curved_patches import ball, circle, meridian, on_ball, sheet
 
 from core.errors import PatternError
 from core.geometry.mesh import Mesh, half_edges
@@ -123,3 +123,21 @@ def test_a_curve_over_a_gap_is_refused_by_name():
     with pytest.raises(PatternError) as refused:
         cut_surface(front, (SurfaceCurve("bridge", on_ball(90.0, np.linspace(-40.0, 40.0, 30))),))
     assert refused.value.message.parameters["name"] == "bridge"
+
+
+def cleft(u, v):
+    """A cleft 30 mm deep along v, whose walls overlap by up to 2 mm below its upper third."""
+    depth = np.maximum(30.0 - np.abs(u), 0.0)
+    overlap = np.where(depth > 8.0, -np.sin(np.pi * (depth - 8.0) / 22.0), 0.25 * (8.0 - depth))
+    return np.sign(u) * np.where(np.abs(u) < 30.0, overlap, np.abs(u) - 28.0), depth, v
+
+
+def test_a_curve_in_a_cleft_stays_on_its_wall_where_the_walls_overlap():
+    skin = sheet(cleft, 120.0, 120.0)
+    v = np.linspace(-40.0, 40.0, 28)
+    points = np.stack(cleft(np.full(28, 12.0), v), axis=1)
+    points[12:15, 0] *= -1.0  # nearer to the wall on the other side
+    cut = cut_surface(skin, (SurfaceCurve("centre", points),))
+    path = cut.vertices[cut.chains[0]]
+    assert np.linalg.norm(np.diff(path, axis=0), axis=1).sum() < 85.0
+    assert np.sign(path[:, 0]).min() == np.sign(points[0, 0])
