@@ -19,8 +19,8 @@ class PieceRow:
 
     ``strain_percent`` is that of the worn piece before ease on 95 % of its area, at most ``limit_percent``
     where its cloth takes it up. ``reason`` says why it cannot be sewn as it is, empty if it ``fits``;
-    ``note`` what to look at. ``stretch_percent`` is its mean stretch when worn, with its ease, across and
-    down.
+    it ``is_overstrained`` where that is its strain. ``note`` says what to look at, ``stretch_percent`` is its
+    mean stretch when worn, with its ease, across and down.
     """
 
     name: str
@@ -33,6 +33,7 @@ class PieceRow:
     reason: str
     note: str
     stretch_percent: tuple[float, float]
+    is_overstrained: bool
 
 
 @dataclass(frozen=True)
@@ -70,6 +71,7 @@ def piece_rows(pattern: Pattern) -> tuple[PieceRow, ...]:
                 _said(problem),
                 _said(pattern.note(flat)),
                 (100.0 * across, 100.0 * down),
+                problem is not None and problem == pattern.strain_problem(flat),
             )
         )
     return tuple(rows)

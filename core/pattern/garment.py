@@ -186,20 +186,26 @@ class Pattern:
         return {flat.panel.name: self._problem_of(flat) for flat in self.flats}
 
     def _problem_of(self, flat: FlatPanel) -> Message | None:
-        cloth, within = self.cloths[flat.panel.cloth], self.strains[flat.panel.name].within
         if flat.is_folded:
             return Message("Cannot be flattened without folds.")
         if flat.overlaps:
             return Message("Overlaps itself when flattened.")
-        if within > cloth.limit:
-            return Message(
-                "Strain of {strain} % on 95 % of the area exceeds {limit} %, the limit of {cloth}.",
-                strain=f"{100.0 * within:.1f}",
-                cloth=ClothName(cloth.title),
-                limit=f"{100.0 * cloth.limit:g}",
-            )
+        if strained := self.strain_problem(flat):
+            return strained
         sewn = [seam for seam in self.matched.seams if self.flats.index(flat) in seam.panels]
         return next(filter(None, map(self.seam_problem, sewn)), None)
+
+    def strain_problem(self, flat: FlatPanel) -> Message | None:
+        """Return by how much the strain of a piece exceeds the limit of its cloth, None if it does not."""
+        cloth, within = self.cloths[flat.panel.cloth], self.strains[flat.panel.name].within
+        if within <= cloth.limit:
+            return None
+        return Message(
+            "Strain of {strain} % on 95 % of the area exceeds {limit} %, the limit of {cloth}.",
+            strain=f"{100.0 * within:.1f}",
+            cloth=ClothName(cloth.title),
+            limit=f"{100.0 * cloth.limit:g}",
+        )
 
     def seam_problem(self, seam: SewnSeam) -> Message | None:
         """Return why a seam cannot be sewn: its sides still differ when all pieces are matched. Else None."""

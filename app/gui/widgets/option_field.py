@@ -9,7 +9,7 @@ from typing import Any
 
 from PySide6.QtCore import QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QAction, QActionGroup, QKeyEvent, QPainter, QPaintEvent
-from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSizePolicy, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSizePolicy, QStyleOptionButton, QWidget
 
 from app.gui.theme.icons import paint_icon
 from app.gui.theme.stylesheet import font, tokens_of
@@ -19,6 +19,9 @@ from app.gui.widgets.tooltip import set_tip
 from app.gui.widgets.value_edit import InlineEdit, read_number
 from app.i18n.catalog import number, tr
 from app.presenters.model_options import Amount, Choice, Setting
+
+_BESIDE = 42  # width of margins and arrow beside the text of a menu button [px]
+_NARROWEST = 120  # width of one that elides its text [px]
 
 
 class Field(QWidget):
@@ -87,7 +90,7 @@ class MenuField(Field):
 
     def sizeHint(self) -> QSize:
         wide = self._button.fontMetrics().horizontalAdvance
-        return QSize(max(wide(words) for _, words in self._choice.options) + 42, 30)
+        return QSize(max(wide(words) for _, words in self._choice.options) + _BESIDE, 30)
 
     def minimumSizeHint(self) -> QSize:
         return self.sizeHint()
@@ -97,10 +100,13 @@ class MenuField(Field):
 
 
 class OptionCombo(QPushButton):
-    """A button that opens a menu."""
+    """A button that opens a menu; one that ``elides`` its text may be narrower than it."""
 
-    def __init__(self) -> None:
+    def __init__(self, *, elides: bool = False) -> None:
         super().__init__()
+        self._elides = elides
+        if elides:
+            self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
         self.setFont(font("body"))
         self.setProperty("kind", "pull")
         self.setCursor(Qt.CursorShape.PointingHandCursor)
@@ -110,6 +116,16 @@ class OptionCombo(QPushButton):
             self.click()  # a button of Qt would go on to the next one
         else:
             super().keyPressEvent(event)
+
+    def minimumSizeHint(self) -> QSize:
+        hint = super().minimumSizeHint()
+        return QSize(min(hint.width(), _NARROWEST), hint.height()) if self._elides else hint
+
+    def initStyleOption(self, option: QStyleOptionButton) -> None:
+        super().initStyleOption(option)
+        if self._elides:
+            room = self.width() - _BESIDE
+            option.text = self.fontMetrics().elidedText(self.text(), Qt.TextElideMode.ElideRight, room)
 
     def paintEvent(self, event: QPaintEvent) -> None:
         super().paintEvent(event)

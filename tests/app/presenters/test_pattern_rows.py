@@ -32,6 +32,7 @@ def test_pieces_have_their_figures_and_the_reason_why_they_do_not_fit(cup: Patte
     assert upper.area_cm2 == pytest.approx(0.01 * flat.areas.sum())
     assert (upper.fits, upper.reason) == (True, "")
     assert not lower.fits
+    assert (upper.is_overstrained, lower.is_overstrained) == (False, True)
     assert lower.reason == (
         f"Strain of {lower.strain_percent:.1f} % on 95 % of the area exceeds 8 %, "
         "the limit of Cup tricot, stable."

@@ -72,7 +72,8 @@ class PieceCard(_Card):
     """The selected piece: its strain, its cloth and grain line, and fixes where it exceeds the limit.
 
     ``fixes_requested`` and ``chart_requested`` start their computation; ``fix_chosen`` carries the number of
-    a fix, ``dart_chosen`` and ``dart_requested`` a Dart of the chart: one to show, one to add.
+    a fix, ``dart_chosen`` and ``dart_requested`` a Dart of the chart: one to show, one to add. ``extended``:
+    fixes, a note or a chart were added at its end.
     """
 
     cloth_chosen = Signal(str)
@@ -84,23 +85,24 @@ class PieceCard(_Card):
     chart_requested = Signal()
     dart_chosen = Signal(object)
     dart_requested = Signal(object)
+    extended = Signal()
 
     def __init__(self) -> None:
         super().__init__()
-        self.facts, self.reason = sentence("", "secondary"), sentence("", "secondary")
+        self.reason, self.facts = sentence("", "secondary"), sentence("", "secondary")
         set_tag(self.reason, "tone", "warn")
-        self.cloth = OptionCombo()
+        self.cloth = OptionCombo(elides=True)
         self.cloth.setMinimumHeight(28)
         self._menu = Menu(self)
         self.cloth.clicked.connect(lambda: pull_down(self._menu, self.cloth))
         turn = Amount("turn", tr("Grain line rotation"), "", "°", 1.0, 0, (-90.0, 90.0))
         self.turn = AmountEdit(turn)
         self.turn.entered.connect(self.turn_changed.emit)
+        self.column.addWidget(self.reason)
         self.column.addWidget(self.facts)
         self.add_field(tr("Cloth"), tr("Set the cloth of the piece on both sides"), self.cloth)
         tip = tr("Rotate the grain line: 0° is up on the body")
         self.add_field(turn.title, tip, self.turn)
-        self.column.addWidget(self.reason)
         self._fixes = QVBoxLayout()
         self._fixes.setSpacing(4)
         self.column.addLayout(self._fixes)
@@ -141,10 +143,10 @@ class PieceCard(_Card):
     def show_chart(self, chart: DartChart | None, limit: float) -> None:
         """Show what darts leave, beside the limit of the cloth [1]; None hides the chart."""
         self._charted.setVisible(chart is not None)
-        self.reason.setVisible(chart is None and bool(self.reason.text()))  # the chart has the limit too
         if chart is not None:
             self.darts.show_chart(chart, limit)
             self.dart_words.setText(self.darts.words())
+            self.extended.emit()
 
     def show_piece(self, row: PieceRow | None, cloths: Sequence[Cloth], cloth: str, turn: float) -> None:
         """Show a piece, made of the cloth of this name; None hides the card."""
@@ -152,20 +154,9 @@ class PieceCard(_Card):
         if row is None:
             return
         self.heading.setText(row.title)
-        facts = tr("Strain {strain} % on 95 % of the area, limit {limit} %. {area} cm².")
-        worn = tr("Mean stretch when worn: {across} % across, {down} % down.")
-        across, down = row.stretch_percent
-        self.facts.setText(
-            facts.format(
-                strain=number(row.strain_percent, 1),
-                limit=number(row.limit_percent, 0),
-                area=number(row.area_cm2, 0),
-            )
-            + " "
-            + worn.format(across=number(across, 1), down=number(down, 1))
-        )
         self.reason.setText(row.reason or row.note)
         self.reason.setVisible(bool(self.reason.text()))
+        self.facts.setText(_facts(row))
         self.suggest.setVisible(not row.fits)
         self.turn.show_value(turn)
         self._fill_menu(cloths, cloth)
@@ -198,6 +189,22 @@ class PieceCard(_Card):
             press = _FixButton(text)
             press.clicked.connect(_emitting(self.fix_chosen.emit, place))
             self._fixes.addWidget(press)
+        if note or words:
+            self.extended.emit()
+
+
+def _facts(row: PieceRow) -> str:
+    """Return strain, area and stretch of a piece; its strain is left out where the reason has it."""
+    strain = tr("Strain {strain} % on 95 % of the area, limit {limit} %.").format(
+        strain=number(row.strain_percent, 1), limit=number(row.limit_percent, 0)
+    )
+    across, down = (number(value, 1) for value in row.stretch_percent)
+    facts = (
+        "" if row.is_overstrained else strain,
+        tr("Area {area} cm².").format(area=number(row.area_cm2, 0)),
+        tr("Mean stretch when worn: {across} % across, {down} % down.").format(across=across, down=down),
+    )
+    return " ".join(filter(None, facts))
 
 
 class _FixButton(QFrame):

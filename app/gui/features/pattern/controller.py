@@ -371,7 +371,7 @@ class PatternController(QObject):
             self.panel.seam_card.hide()
             return
         self.view.select(self.piece, self.seam)
-        self.panel.list.select(self.piece)
+        self.panel.select_piece(self.piece)
         self._show_piece(result, plan)
         self._show_seam(result, plan)
         self.layer.select(self.seam, self.editing.handles())

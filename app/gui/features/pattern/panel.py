@@ -1,14 +1,16 @@
 """Panel of the pattern: its block, its verdict, its pieces, and what is selected of them."""
 
+# ruff: noqa: N802 - Qt names its events
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtCore import QEvent, QObject, QSize, Qt, Signal
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QSizePolicy, QStackedWidget, QVBoxLayout, QWidget
 
 from app.gui.features.pattern.cards import PieceCard, SeamCard
-from app.gui.features.pattern.piece_list import PieceList
+from app.gui.features.pattern.piece_list import ROW, PieceList
 from app.gui.theme.stylesheet import font, label, set_tag
 from app.gui.widgets.basic import ScrollColumn, button, hairline, sentence
 from app.gui.widgets.menu import Menu, pull_down
@@ -20,6 +22,68 @@ from app.presenters.model_options import length_amount
 from app.presenters.pattern import PieceRow
 from core.document.block import LARGEST_ALLOWANCE
 from core.document.garment_pattern import GarmentPattern
+
+LIST_ROWS = 4
+"""Pieces of the list that a card leaves in sight."""
+
+_HEAD = 104  # height of block, verdict and note over the list [px]
+
+
+class _PieceColumn(ScrollColumn):
+    """Block, verdict, list and settings; the selected piece stays in sight while a card takes its room."""
+
+    def __init__(self, pieces: PieceList) -> None:
+        super().__init__(tr("Pattern pieces"), (12, 12, 12, 12), 8)
+        self._pieces = pieces
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Ignored)
+
+    def keep(self, rows: int) -> None:
+        """Stay so high that of so many ``rows`` of the list ``LIST_ROWS`` are in sight."""
+        self.setMinimumHeight(_HEAD + min(rows, LIST_ROWS) * ROW)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self.show_selected()
+
+    def show_selected(self) -> None:
+        """Scroll to the selected piece."""
+        for each in self._pieces.buttons:
+            if each.isChecked():
+                self.ensureWidgetVisible(each, 0, 4)
+
+
+class _CardColumn(ScrollColumn):
+    """The card of what is selected, as high as it is; it scrolls where the list would get too small."""
+
+    def __init__(self, cards: Sequence[QWidget]) -> None:
+        self._at_end = False
+        super().__init__(tr("Selection"), (12, 0, 12, 10), 0)
+        for card in cards:
+            self.column.addWidget(card)
+        self.column.addStretch(1)
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
+        bar = self.verticalScrollBar()
+        bar.rangeChanged.connect(self._scroll_to_end)
+        bar.actionTriggered.connect(lambda _: self.show_end(False))
+
+    def sizeHint(self) -> QSize:
+        return QSize(super().sizeHint().width(), self.column.totalHeightForWidth(self.viewport().width()))
+
+    def minimumSizeHint(self) -> QSize:
+        return QSize(super().minimumSizeHint().width(), 0)
+
+    def show_end(self, on: bool = True) -> None:
+        """Scroll to what has been added at the end of a card, once it has its place; or do no longer."""
+        self._at_end = on
+
+    def _scroll_to_end(self, _: int, most: int) -> None:
+        if self._at_end:
+            self.verticalScrollBar().setValue(most)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.LayoutRequest:
+            self.updateGeometry()
+        return super().eventFilter(watched, event)
 
 
 class PatternPanel(QStackedWidget):
@@ -91,7 +155,7 @@ class PatternPanel(QStackedWidget):
         whole = QVBoxLayout(holder)
         whole.setContentsMargins(0, 0, 0, 0)
         whole.setSpacing(0)
-        page = ScrollColumn(tr("Pattern pieces"), (12, 12, 12, 12), 8)
+        page = self._column = _PieceColumn(self.list)
         column = page.column
         column.addLayout(self._make_head())
         for each in (self.verdict, self.note):
@@ -105,11 +169,9 @@ class PatternPanel(QStackedWidget):
         column.addLayout(self._make_settings())
         column.addStretch(1)
         whole.addWidget(page, 1)
-        cards = QVBoxLayout()
-        cards.setContentsMargins(12, 0, 12, 10)
-        cards.addWidget(self.piece_card)
-        cards.addWidget(self.seam_card)
-        whole.addLayout(cards)
+        self._cards = _CardColumn((self.piece_card, self.seam_card))
+        self.piece_card.extended.connect(self._cards.show_end)
+        whole.addWidget(self._cards)
         whole.addWidget(self._make_foot())
         return holder
 
@@ -184,8 +246,16 @@ class PatternPanel(QStackedWidget):
     def show_pieces(self, rows: Sequence[PieceRow], faint: bool, selected: str) -> None:
         """Show the pieces, ``faint`` where they are of a former shape."""
         self.list.show_rows(rows, faint, selected)
+        self._column.keep(len(rows))
         for each in (self.list, self.piece_card, self.seam_card):
             each.setEnabled(True)
+
+    def select_piece(self, name: str) -> None:
+        """Show which piece is selected, or none."""
+        if name != self.list.selected:
+            self._cards.show_end(False)
+        self.list.select(name)
+        self._column.show_selected()
 
     def show_verdict(self, words: str, tone: str, note: str = "") -> None:
         """Show whether the pieces can be cut and sewn, in a tone of the style sheet."""

@@ -15,6 +15,10 @@ from app.i18n.catalog import number, tr
 from app.presenters.pattern import PieceRow
 
 _HEIGHT = 36  # of a row [px]
+_APART = 1
+
+ROW = _HEIGHT + _APART
+"""From one row to the next [px]."""
 _LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
 _RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 
@@ -88,8 +92,9 @@ class PieceList(QWidget):
         super().__init__()
         self._column = QVBoxLayout(self)
         self._column.setContentsMargins(0, 0, 0, 0)
-        self._column.setSpacing(1)
+        self._column.setSpacing(_APART)
         self.buttons: list[PieceButton] = []
+        self.selected = ""
 
     def show_rows(self, rows: Sequence[PieceRow], faint: bool, selected: str) -> None:
         """Show these pieces; nothing is emitted."""
@@ -106,6 +111,7 @@ class PieceList(QWidget):
 
     def select(self, name: str) -> None:
         """Show which piece is selected, or none."""
+        self.selected = name
         for each in self.buttons:
             each.setAutoExclusive(False)
             each.setChecked(each.row is not None and each.row.name == name)
