@@ -1,4 +1,4 @@
-"""Files for clusters: the job for Slurm runs with a srun of this machine, the manifests name what is there."""
+"""Files for clusters: the job for Slurm runs with a stand-in for srun, the manifests name what there is."""
 
 from __future__ import annotations
 
