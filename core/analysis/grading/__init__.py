@@ -1,0 +1,1 @@
+"""Grading: sizes, increments and grade rules from measures of many bodies."""
