@@ -14,6 +14,8 @@ from core.messages import Message
 COMMANDS = {
     "solve": "solve a design and write body, control mesh, iterations and report",
     "batch": "solve one design on many bodies and write a table of results",
+    "grade": "compute size groups, increments and grade rules from the results of a batch run",
+    "compare": "compare two designs body by body, from the results of a batch run",
     "target": "compute line lengths for target positions and measurements",
     "calibrate": "compare with a fitting scan and fit tissue and line stiffness",
     "diagnose": "find conflicting lines and suggest the smallest fix",

@@ -11,6 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from coarse_bodies import coarse_body
+from graded_runs import made_rows, write_run
 
 from app.cli.main import main
 from app.presenters.samples import sample_design
@@ -27,6 +28,9 @@ PLACEHOLDER = re.compile(r"\b(?:DIR|FOLDER|FILE|COMMAND|LINE|NAME)\b")
 
 SCANS = {"scan": "mannequin", "worn": "person", "trunk": "trunk"}
 """Scans that pages name, and the samples that stand for them."""
+
+VARIANTS = ("Soft bra", "Underwired bra")
+"""Designs of the results of a run that pages name."""
 
 
 def commands_of(path: Path) -> Iterator[str]:
@@ -45,12 +49,14 @@ def words_of(command: str) -> list[str]:
 
 
 def furnish(folder: Path) -> None:
-    """Put the scans, on few vertices, and the project that pages name into an empty folder."""
+    """Put the scans, on few vertices, the project and the results that pages name into an empty folder."""
     for name, sample in SCANS.items():
         coarse_body(sample, folder).rename(folder / f"{name}.ply")
     design = replace(sample_design().with_line("mid-bust", 0.95), volume="exact")
     design = replace(design, scan=replace(design.scan, path=str(folder / "scan.ply")))
     save_project(folder / "design.busk", Document.single(design), read_scan_file(design.scan), b"")
+    rows = [row for name in VARIANTS for row in made_rows(12, variant=name)]
+    write_run(folder / "results", rows, VARIANTS)
 
 
 def run(command: str) -> tuple[int, str]:
