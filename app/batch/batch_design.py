@@ -20,6 +20,7 @@ from core.document.serialization import from_values, to_values
 from core.document.storage.project_file import is_project, open_project
 from core.errors import LineError
 from core.garment.line_requests import elastic_of, named, with_line_elastic
+from core.garment.presets import Preset, with_preset
 from core.messages import Message
 from core.scan.source import ScanSource
 
@@ -115,6 +116,11 @@ def batch_design(
         chosen.append(LineElastic(line, elastic_of(elastic)))
     # As a worker reads it: the same design has the same key wherever it comes from.
     return design_of_data(json.loads(json.dumps(replace(found, elastics=tuple(chosen)).as_data())))
+
+
+def preset_design(preset: Preset) -> tuple[str, Design]:
+    """Return the name and the design of a preset on no body yet."""
+    return preset.title, with_preset(Design(ScanSource("")), preset)
 
 
 def _check_lines(design: BatchDesign) -> None:

@@ -8,7 +8,6 @@ import json
 import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,18 +16,19 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from app.batch.batch_design import SCHEMA_VERSION, BatchDesign, content_key
+from app.batch.design_file import DESIGN, other_design_error, stored_key, write_designs
 from app.batch.index_page import index_page
 from app.batch.one_body import Row
 from app.batch.schema import CRASHED, STATES, TEXT, TIMEOUT, Column, columns_of
+from app.batch.stored_rows import CSV, PAGE
 from core import __version__
 from core.document.storage.file_lock import FolderLock
-from core.errors import ProjectError, UserError, reason_of
+from core.errors import ProjectError, reason_of
 from core.export.csv_cells import ENCODING, cell
 from core.files.atomic_write import atomic_path, write_text
 from core.messages import Message
 
-TABLE, CSV, SUMMARY, DESIGN = "results.parquet", "results.csv", "summary.json", "design.json"
-PAGE = "index.html"
+TABLE, SUMMARY = "results.parquet", "summary.json"
 
 FLUSH_SECONDS, FLUSH_SHARE, MOST_ROWS = 2.0, 0.01, 5000
 """Rows are written after so many seconds, or after this share of the time that the run has taken, so that a
@@ -68,14 +68,9 @@ class ResultStore:
         if restart:
             self._clear()
         elif _former_key(self.folder) not in (None, self.key):
-            raise UserError(
-                Message("{folder} holds the results of another design.", folder=str(self.folder)),
-                Message("Choose another folder, or remove these results with --restart."),
-            )
+            raise other_design_error(self.folder)
         self._table.mkdir(exist_ok=True)
-        values = {"key": self.key, "busk_version": __version__, "schema_version": SCHEMA_VERSION}
-        values["designs"] = [each.as_data() for each in self.designs]
-        write_text(self.folder / DESIGN, json.dumps(values, indent=1) + "\n")
+        write_designs(self.folder / DESIGN, self.designs)
         self._waiting: list[Row] = []
         self._stored: dict[tuple[str, str], _Stored] = {}
         self._by_content: dict[tuple[str, str], list[str]] = {}
@@ -250,9 +245,8 @@ def _locked(folder: Path) -> FolderLock:
 
 def _former_key(folder: Path) -> str | None:
     """Return the key of the designs whose results a folder holds, None without any."""
-    with suppress(OSError, ValueError, KeyError, TypeError):
-        return str(json.loads((folder / DESIGN).read_text("utf-8"))["key"])
-    return "" if any((folder / TABLE).glob("part-*.parquet")) else None
+    key = stored_key(folder)
+    return "" if key is None and any((folder / TABLE).glob("part-*.parquet")) else key
 
 
 def _arrow_schema(columns: Sequence[Column]) -> pa.Schema:

@@ -16,7 +16,9 @@ from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from app.batch.batch_design import BatchDesign, batch_design
+from app.batch.batch_design import BatchDesign, batch_design, preset_design
+from app.batch.design_file import is_design_file, read_designs
+from app.batch.extra import missing_error
 from app.batch.inputs import list_scans, printable_path
 from app.batch.pending import pending_bodies
 from app.batch.schema import DONE
@@ -28,10 +30,10 @@ from app.cli.output import NOT_CONVERGED, make_folder
 from core.document.design import Design, ScanSource
 from core.document.storage.project_file import is_project, open_project
 from core.errors import UserError
-from core.garment.presets import find_preset, with_preset
-from core.messages import Message
+from core.garment.presets import find_preset
 
 if TYPE_CHECKING:
+    from app.batch.one_body import Row
     from app.batch.store import ResultStore
 
 SCANS_HELP = (
@@ -39,9 +41,9 @@ SCANS_HELP = (
     "scan"
 )
 DESIGN_HELP = (
-    "a project, a preset by title or unique words, or a preset file; of a project everything but scan, "
-    "landmarks and customer. May be repeated: each design is a variant with rows of its own. Without it the "
-    "design is that of the other options"
+    "a project, a preset by title or unique words, a preset file, or design.json of another run; of a "
+    "project everything but scan, landmarks and customer. May be repeated: each design is a variant with "
+    "rows of its own. Without it the design is that of the other options"
 )
 
 
@@ -59,6 +61,8 @@ def add_options(parser: ArgumentParser) -> None:
     parser.add_argument("--report", nargs="?", const="en", choices=("en", "ja"), help=report)
     parser.add_argument("--no-pictures", action="store_true", help="write no picture of each body")
     parser.add_argument("--json", action="store_true", help="print progress and summary as lines of JSON")
+    rows = "with --json, print each row of results as well"
+    parser.add_argument("--rows", action="store_true", help=rows)
     parser.add_argument(
         "--restart", action="store_true", help="remove the results in the output folder first"
     )
@@ -93,13 +97,26 @@ def _positive(text: str) -> float:
 
 def run(options: Namespace) -> int:
     """Compute all bodies that are not in the output folder yet. Raises UserError, KeyboardInterrupt."""
-    designs, scans = designs_of(options), list_scans(options.scans, Path(options.out))
-    store = _store(options, designs)
-    progress = Progress(len(scans) * len(designs), as_json=options.json)
     try:
-        return _run(options, scans, store, progress)
-    finally:
-        store.close()
+        designs, scans = designs_of(options), list_scans(options.scans, Path(options.out))
+        store = _store(options, designs)
+        progress = Progress(len(scans) * len(designs), as_json=options.json, with_rows=options.rows)
+        try:
+            return _run(options, scans, store, progress)
+        finally:
+            store.close()
+    except UserError as problem:
+        if options.json:
+            print(json.dumps(_error_event(problem)), flush=True)
+        raise
+
+
+def _error_event(problem: UserError) -> dict[str, Any]:
+    """Return an error for other programs; ``sentences`` are those of the catalogue with what fills them."""
+    sentences = [
+        [each.msgid, {name: str(value) for name, value in each.items}] for each in problem.text.sentences
+    ]
+    return {"event": "error", "message": str(problem), "sentences": sentences}
 
 
 def _run(options: Namespace, scans: list[str], store: ResultStore, progress: Progress) -> int:
@@ -113,7 +130,7 @@ def _run(options: Namespace, scans: list[str], store: ResultStore, progress: Pro
     try:
         for rows in run_batch(run, pending):
             store.add(rows)
-            progress.add(len(rows))
+            progress.add(rows)
         interrupted = False
     finally:
         order = [printable_path(scan) for scan in scans]
@@ -134,10 +151,7 @@ def _store(options: Namespace, designs: Sequence[BatchDesign]) -> ResultStore:
 
         from app.batch.store import ResultStore  # noqa: PLC0415
     except ImportError as missing:
-        raise UserError(
-            Message("A batch run needs packages that are not installed: {why}.", why=str(missing)),
-            Message("Install Busk from its source with the extra batch."),
-        ) from missing
+        raise missing_error(str(missing)) from missing
     return ResultStore(make_folder(options.out), designs, restart=options.restart)
 
 
@@ -145,13 +159,26 @@ def designs_of(options: Namespace) -> list[BatchDesign]:
     """Return the variants of a run, each named after its project or preset. Raises UserError."""
     designs: dict[str, BatchDesign] = {}
     for text in options.design or [""]:
-        name, design = _design(text)
-        name = next(each for each in _numbered(name) if each not in designs)
-        axes = {key: getattr(options, key) for key in ("unit", "up", "front") if getattr(options, key)}
-        design = with_options(replace(design, scan=ScanSource("", **axes)), options)
-        given = (options.line or [], options.elastic or [], options.target or [])
-        designs[name] = batch_design(name, design, *given)
+        for chosen in _chosen(text):
+            name = next(each for each in _numbered(chosen.name) if each not in designs)
+            designs[name] = _with_options(replace(chosen, name=name), options)
     return list(designs.values())
+
+
+def _with_options(chosen: BatchDesign, options: Namespace) -> BatchDesign:
+    axes = {key: getattr(options, key) for key in ("unit", "up", "front") if getattr(options, key)}
+    design = with_options(replace(chosen.design, scan=replace(chosen.design.scan, **axes)), options)
+    lines, targets = (*chosen.lines, *(options.line or [])), (*chosen.targets, *(options.target or []))
+    found = batch_design(chosen.name, design, lines, options.elastic or [], targets)
+    return replace(found, elastics=(*chosen.elastics, *found.elastics))
+
+
+def _chosen(text: str) -> list[BatchDesign]:
+    """Return the designs of a text: several of a file of designs, else one. Raises UserError."""
+    if is_design_file(text):
+        return read_designs(Path(text))
+    name, design = _design(text)
+    return [BatchDesign(name, replace(design, scan=ScanSource("")))]
 
 
 def _design(text: str) -> tuple[str, Design]:
@@ -159,8 +186,7 @@ def _design(text: str) -> tuple[str, Design]:
         return "design", Design(ScanSource(""))
     if is_project(text):
         return Path(text).stem, open_project(text).design
-    preset = find_preset(text)
-    return preset.title, with_preset(Design(ScanSource("")), preset)
+    return preset_design(find_preset(text))
 
 
 def _numbered(name: str) -> Iterator[str]:
@@ -171,8 +197,8 @@ def _numbered(name: str) -> Iterator[str]:
 class Progress:
     """Shows how many of ``total`` rows are done, with rate and time left, as text or JSON."""
 
-    def __init__(self, total: int, *, as_json: bool) -> None:
-        self._total, self._json = total, as_json
+    def __init__(self, total: int, *, as_json: bool, with_rows: bool = False) -> None:
+        self._total, self._json, self._rows = total, as_json, as_json and with_rows
         self._start, self._shown = time.monotonic(), -math.inf
         self._done = self._skipped = 0
         self._line = not as_json and sys.stderr.isatty()
@@ -186,9 +212,11 @@ class Progress:
         """Count a row that is there already."""
         self._skipped += 1
 
-    def add(self, count: int) -> None:
+    def add(self, rows: Sequence[Row]) -> None:
         """Count rows that are done, and show the state now and then: often on a terminal, else seldom."""
-        self._done += count
+        self._done += len(rows)
+        if self._rows:
+            print(json.dumps({"event": "rows", "rows": rows}), flush=True)
         if time.monotonic() - self._shown >= (0.2 if self._line or self._json else 10.0):
             self._shown = time.monotonic()
             self._show()
