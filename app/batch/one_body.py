@@ -13,6 +13,7 @@ from app.batch.schema import DONE, REFUSED, measure_column
 from app.presenters.pattern import piece_rows, seam_rows
 from core.analysis.inverse_design.line_selection import LineSelection
 from core.analysis.inverse_design.target_requests import absolute, changes_of, goals_of
+from core.document.design import Design
 from core.errors import PatternError, UserError
 from core.export.report_data import lift_of
 from core.garment.assessment import assess_with
@@ -62,6 +63,17 @@ def compute_row(design: BatchDesign, scan: Path, previous: Stages | None = None)
             row |= _original(stages)
         solution = None
     return BodyResult(row, stages, solution)
+
+
+def design_on_body(design: BatchDesign, scan: Path) -> Design:
+    """Return the design that a row is computed with, its lengths and targets on this body.
+
+    Raises UserError.
+    """
+    placed = design.on_scan(scan)
+    if design.lines or design.elastics or design.targets:
+        placed = _with_lengths(build(placed), design, {})[0].design
+    return placed
 
 
 def _with_lengths(stages: Stages, design: BatchDesign, row: Row) -> tuple[Stages, Row]:

@@ -109,6 +109,16 @@ def measure_column(key: str, unit: str, *, after: bool) -> str:
     return f"{stem}{'_after' if after else ''}{SUFFIXES[unit]}"
 
 
+def measure_keys() -> dict[str, tuple[str, bool]]:
+    """Return the measurements by the names of their columns, and whether they are of the reshaped body."""
+    return {
+        measure_column(key, definition.unit, after=after): (key, after)
+        for definition in DEFINITIONS.values()
+        for key in definition.keys
+        for after in (False, True)
+    }
+
+
 def _measures(designs: Sequence[BatchDesign]) -> Iterator[Column]:
     lower = any(each.design.lower is not None for each in designs)
     for definition in DEFINITIONS.values():

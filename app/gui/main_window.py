@@ -15,6 +15,7 @@ from PySide6.QtWidgets import (
 
 from app.gui.actions import Actions
 from app.gui.context import AppContext, Navigation, Selection
+from app.gui.features.batch.controller import BatchController
 from app.gui.features.convergence.controller import ConvergenceController
 from app.gui.features.cups.card import CupCard
 from app.gui.features.cups.controller import CupsController
@@ -126,12 +127,8 @@ class MainWindow(QMainWindow):
         self.undo_group.setActiveStack(session.undo_stack)
         do = self.actions_ = Actions(self, self.undo_group, self.view.tool_actions)
         self.top = TitleBar(do.bar, do.undo, do.redo, do.export_any)
-        self.rail, self.notices, self.strip, self.status = (
-            StepNavigation(),
-            NotificationBar(),
-            ConvergencePanel(),
-            StatusBar(),
-        )
+        self.rail, self.notices = StepNavigation(), NotificationBar()
+        self.strip, self.status = ConvergencePanel(), StatusBar()
         self.scan, self.landmarks = ScanPanel(), LandmarksPanel()
         self.lines, self.result, self.garment = LinesPanel(), MeasurementsPanel(), GarmentPanel()
         self.pattern, self.pieces = PatternPanel(), PiecesView()
@@ -208,6 +205,8 @@ class MainWindow(QMainWindow):
         self.export_controller = ExportController(context, self.assessment_controller.of)
         self.report_controller = ReportController(context, self.uncertainty_controller.on_sheet)
         self.top.add_primary(self.report_controller.action)
+        self.batch_controller = BatchController(context, self.project_controller.may_leave)
+        self.status.place(self.batch_controller.indicator)
         for page in (self.start_controller.page, self.report_controller.page):
             self.pages.addWidget(page)
         self.project_controller.pending += [
@@ -581,12 +580,14 @@ class MainWindow(QMainWindow):
 
     def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802
         """Confirm changes; then end solver, background work and 3D view before the window."""
-        if not self.autosave_controller.leaves and not self.project_controller.may_leave():
+        may_close = self.project_controller.may_leave, self.batch_controller.may_quit
+        if not self.autosave_controller.leaves and not all(each() for each in may_close):
             event.ignore()
             return
         self.layout_.keep()
         # The solver may be in the middle of reading a scan: nobody has to watch the window wait for it.
         self.hide()
+        self.batch_controller.close()
         self.throttled.close()
         self.history_controller.close()
         self.recovery_controller.close()

@@ -50,6 +50,10 @@ class StatusBar(QWidget):
         row.addWidget(self._job)
         row.addWidget(self._saved)
 
+    def place(self, widget: QWidget) -> None:
+        """Place what a feature shows before the job."""
+        self._row.insertWidget(self._row.indexOf(self._job), widget)
+
     def set_facts(self, facts: Sequence[str]) -> None:
         """Show facts such as the unit and the number of triangles, ready to read."""
         self._facts.setText("     ".join(facts))

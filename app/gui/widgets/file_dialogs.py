@@ -70,6 +70,30 @@ def ask_scan(parent: QWidget, title: str) -> str:
     return path
 
 
+def ask_project(parent: QWidget, title: str) -> str:
+    """Return the project that the user wants to use, or an empty text."""
+    kinds = f"{tr('Projects')} (*.busk)"
+    path, _ = QFileDialog.getOpenFileName(parent, title, str(last_folder("projects")), kinds)
+    return path
+
+
+def ask_scans(parent: QWidget, title: str) -> list[str]:
+    """Return the scans, or lists of scans as CSV, that the user wants to compute; none if there are none."""
+    kinds = f"{tr('Scans')} ({PATTERNS} *.csv)"
+    paths, _ = QFileDialog.getOpenFileNames(parent, title, str(last_folder("opened")), kinds)
+    if paths:
+        remember_folder("opened", paths[0])
+    return paths
+
+
+def ask_folder(parent: QWidget, title: str, kind: str = "opened") -> str:
+    """Return a folder that the user chooses, or an empty text; ``kind`` is that of ``last_folder``."""
+    path = QFileDialog.getExistingDirectory(parent, title, str(last_folder(kind)))
+    if path:
+        remember_folder(kind, path)
+    return path
+
+
 TABLES = "CSV (*.csv *.tsv *.txt)"
 
 

@@ -1,0 +1,1 @@
+"""A batch run from the window: setup, progress, table of results and distributions."""
