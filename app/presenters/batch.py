@@ -13,10 +13,9 @@ from typing import Any
 from app.i18n.catalog import joined, listed, number, tr, tr_plural
 from app.i18n.lengths import length_number, length_unit
 from app.presenters.assessment import headline
-from app.presenters.messages import render
+from app.presenters.messages import sentence_text
 from core.garment.assessment import BAD, CAUTION, GOOD
 from core.measurements.sizes import built_in
-from core.messages import Message
 
 NOT_COMPUTED = ("refused", "crashed", "timeout")
 """States of rows without results; the level of the others is that of their verdict."""
@@ -249,6 +248,6 @@ def duration_text(seconds: float) -> str:
 
 def told_error(event: Mapping[str, Any]) -> tuple[str, str]:
     """Return message and hint of an error of the command, in the language in use."""
-    texts = [render(Message(text, **values)) for text, values in event.get("sentences", ())]
+    texts = [sentence_text(text, values) for text, values in event.get("sentences", ())]
     first, *rest = texts or [str(event.get("message", ""))]
     return first, joined(rest)

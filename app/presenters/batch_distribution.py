@@ -33,12 +33,16 @@ _HIDDEN = ("memory_mb",)
 
 @dataclass(frozen=True)
 class PlottedColumn:
-    """A numeric column: its ``name`` in the table, ``group`` and ``title`` in a menu, and its ``unit``."""
+    """A numeric column: its ``name`` in the table, ``group`` and ``title`` in a menu, and its ``unit``.
+
+    One ``of_scan`` is the same for all variants.
+    """
 
     name: str
     group: str
     title: str
     unit: str
+    of_scan: bool = False
 
     @property
     def heading(self) -> str:
@@ -64,7 +68,7 @@ def _column(name: str, unit: str, measures: Mapping[str, tuple[str, bool]]) -> P
     if name in measures or name.startswith("own_"):
         after = measures[name][1] if name in measures else name.endswith("_after_mm")
         group = tr("Reshaped body") if after else tr("Original body")
-        return PlottedColumn(name, group, _measure(name, measures), unit)
+        return PlottedColumn(name, group, _measure(name, measures), unit, not after)
     if line := _LINE.fullmatch(name):
         return PlottedColumn(name, line_title(line[2]), _line_titles()[line[1]], unit)
     if piece := _PIECE.fullmatch(name):
@@ -149,9 +153,10 @@ def distribution(
 ) -> Distribution | None:
     """Return the distribution of a column, the ``place``-th number of each row, or None without values."""
     scale = shown_value(1.0, column.unit)
+    rows = list({row.scan: row for row in rows}.values()) if column.of_scan else rows
     values = {
-        name: scale * np.array([row.numbers[place] for row in rows if row.variant == name], float)
-        for name in variants
+        name: scale * np.array([row.numbers[place] for row in rows if name in ("", row.variant)], float)
+        for name in (("",) if column.of_scan else variants)
     }
     known = {name: each[np.isfinite(each)] for name, each in values.items()}
     known = {name: each for name, each in known.items() if len(each)}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from functools import cache
 
 from app.i18n.catalog import joined, listed, template, tr, tr_context
@@ -47,6 +48,11 @@ def render(message: Text, design: Design | None = None) -> str:
 def render_all(messages: tuple[Message, ...] | list[Message], design: Design | None = None) -> list[str]:
     """Return messages in the language and the unit in use, see ``render``."""
     return [render(each, design) for each in messages]
+
+
+def sentence_text(english: str, values: Mapping[str, str]) -> str:
+    """Return an English sentence of the catalogue, of another process, filled in the language in use."""
+    return render(Message(english, **values))
 
 
 def _text(value: Parameter, design: Design | None) -> str:

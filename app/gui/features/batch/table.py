@@ -19,7 +19,16 @@ from app.presenters.batch import ALL, BatchRow, Cells
 
 _Index = QModelIndex | QPersistentModelIndex
 _NUMBERS = ("bust", "underbust", "lift")
-_WIDTHS = {"scan": 160, "variant": 120, "verdict": 150, "bust": 72, "underbust": 104, "size": 72, "lift": 68}
+_WIDTHS = {
+    "scan": 160,
+    "variant": 120,
+    "verdict": 150,
+    "bust": 72,
+    "underbust": 104,
+    "size": 72,
+    "lift": 68,
+    "remarks": 60,
+}
 _LEAST_MS, _SHARE = 300, 12  # arranging rows takes a twelfth of the time at most
 _RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 _LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
