@@ -196,7 +196,7 @@ class BatchController(QObject):
         dialog.notices.clear()
         if self.results.is_of_other(setup.out, designs):
             folder = Message("{folder} holds the results of another design.", folder=str(setup.out))
-            actions = ((tr("Use new folder"), self._use_new_folder),)
+            actions = ((tr("Use new folder"), self.use_new_folder),)
             dialog.notices.show_notice(
                 "bad", folder, Message("Choose another folder."), actions, lasting=True
             )
@@ -209,7 +209,8 @@ class BatchController(QObject):
         except (UserError, OSError) as problem:
             self._refuse(problem)
 
-    def _use_new_folder(self) -> None:
+    def use_new_folder(self) -> None:
+        """Choose a folder of results that is not there yet."""
         assert self.dialog is not None
         out = self.dialog.setup.out
         if out is not None:

@@ -67,6 +67,10 @@ class DesignChoice(QObject):
         chosen = self._setup.chosen_variants
         return [_neutral(f"{session.name} {name}", each) for name, each in variants.items() if name in chosen]
 
+    def choose_open(self) -> None:
+        """Choose the open design."""
+        self._pick(OPEN, [])
+
     def keep(self, designs: Sequence[BatchDesign]) -> None:
         """Choose the designs of the results shown, whatever is edited or opened from now on."""
         self._stored = self._fixed = list(designs)
@@ -100,7 +104,7 @@ class DesignChoice(QObject):
         menu.clear()
         if session.document is not None:
             text = tr("{name} (current design)").format(name=session.name)
-            menu.addAction(text, lambda: self._pick(OPEN, []))
+            menu.addAction(text, self.choose_open)
         if self._stored:
             text = tr("{name} (design of the results)").format(
                 name=listed(each.name for each in self._stored)

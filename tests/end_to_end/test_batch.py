@@ -1,0 +1,199 @@
+"""A batch run from the window: nothing blocks, rows open their bodies, and what is stopped goes on later."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+from window_tools import Script, run_bodiless, settled
+
+from app.batch.design_file import DESIGN
+from app.gui.features.batch import controller as batch
+from app.gui.features.batch.controller import BatchController
+from app.gui.features.batch.dialog import BatchDialog
+from app.gui.main_window import MainWindow
+
+pytestmark = pytest.mark.usefixtures("empty_house")
+
+
+@pytest.fixture(autouse=True)
+def answers(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Answer the question about a run that goes on; at the end it is stopped."""
+    given = ["quit"]
+    monkeypatch.setattr(batch, "ask", lambda *_: given[0])
+    return given
+
+
+@pytest.fixture
+def scans(tmp_path: Path, mannequin: Path, person: Path) -> Path:
+    """A folder of two good scans and a broken one."""
+    folder = tmp_path / "scans"
+    folder.mkdir()
+    shutil.copy(mannequin, folder / "anna.ply")
+    shutil.copy(person, folder / "berta.ply")
+    (folder / "broken.ply").write_bytes(b"")
+    return folder
+
+
+def opened(window: MainWindow) -> tuple[BatchController, BatchDialog]:
+    controller = window.batch_controller
+    controller.show()
+    assert controller.dialog is not None
+    controller.dialog.setup.workers = 1
+    return controller, controller.dialog
+
+
+def ended(controller: BatchController) -> Callable[[], bool]:
+    return lambda: not controller.run.is_running
+
+
+def notice(dialog: BatchDialog) -> str:
+    shown = dialog.notices.notice()
+    return "" if shown is None else f"{shown.sentence} {shown.hint}"
+
+
+def has_rows(controller: BatchController, count: int) -> Callable[[], bool]:
+    return lambda: len(controller.model.shown) >= count
+
+
+def test_a_run_goes_on_while_its_window_is_closed_and_rows_open_bodies(scans: Path) -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        controller, dialog = opened(window)
+        assert not dialog.run.isEnabled()
+        assert dialog.empty.isVisible()
+        controller.choose_scans([str(scans)])
+        yield lambda: "3 scans" in dialog.setup.scan_field.accessibleDescription()
+        out = dialog.setup.out
+        assert out == scans.parent / "scans mannequin batch"
+        dialog.run.click()
+        assert dialog.stop.isVisible()
+        assert not dialog.setup.isEnabled()
+        dialog.close()
+        yield lambda: "of 3" in window.batch_controller.indicator.press.text()
+        controller.indicator.press.click()
+        assert dialog.isVisible()
+        yield has_rows(controller, 3)
+        yield ended(controller)
+        assert not controller.indicator.isVisible()
+        assert dialog.progress.text() == "Run finished."
+        assert dialog.run.isVisible()
+        assert dialog.page.isEnabled()
+        first = controller.model.shown[0]
+        assert (first.name, first.verdict) == ("broken.ply", "Refused")
+        assert "empty" in first.remarks
+        dialog.doubtful.click()
+        assert [row.name for row in controller.model.shown] == ["anna.ply", "berta.ply", "broken.ply"]
+        assert dialog.card.plot.shown is not None
+        assert sum(counts.sum() for _, counts in dialog.card.plot.shown.series) == 2
+        dialog.search.setText("berta")
+        assert [row.name for row in controller.model.shown] == ["berta.ply"]
+        dialog.search.clear()
+        design = window.session.design
+        dialog.table.setCurrentIndex(controller.model.index(1, 0))
+        QTest.keyClick(dialog.table, Qt.Key.Key_Return)
+        yield lambda: window.session.name == "berta"
+        assert design is not None
+        assert window.session.design is not None
+        assert window.session.design.lines == design.lines
+        assert Path(window.session.design.scan.path) == scans / "berta.ply"
+        assert controller.choice.designs()[0].name == "mannequin", "the design of the run stays chosen"
+
+    assert run_bodiless([], script) == 0
+
+
+def test_a_stopped_run_keeps_its_results_and_goes_on(scans: Path, answers: list[str]) -> None:
+    for number in range(3):
+        shutil.copy(scans / "anna.ply", scans / f"copy {number}.ply")
+
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        controller, dialog = opened(window)
+        controller.choose_scans([str(scans)])
+        dialog.run.click()
+        yield has_rows(controller, 1)
+        answers[0] = ""
+        window.close()
+        assert window.isVisible(), "quitting is confirmed while a run goes on"
+        answers[0] = "quit"
+        dialog.stop.click()
+        assert not dialog.stop.isEnabled()
+        yield ended(controller)
+        assert "stopped" in dialog.progress.text()
+        yield has_rows(controller, 1)
+        kept, out = len(controller.model.shown), dialog.setup.out
+        assert out is not None
+        assert json.loads((out / "summary.json").read_text())["rows"] == kept
+        dialog.run.click()
+        yield ended(controller)
+        yield has_rows(controller, 6)
+        assert len(controller.model.shown) == 6
+        assert dialog.progress.text() == "Run finished."
+
+    assert run_bodiless([], script) == 0
+
+
+def test_the_results_of_another_design_are_shown_and_not_mixed(scans: Path) -> None:
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        controller, dialog = opened(window)
+        controller.choose_scans([str(scans / "anna.ply")])
+        dialog.run.click()
+        yield ended(controller)
+        yield has_rows(controller, 1)
+        out = dialog.setup.out
+        assert out is not None
+        stored = (out / DESIGN).read_text()
+        window.session.edit(lambda design: design.with_line("mid-bust", 0.9), "shorter")
+        controller.choice.choose_open()
+        dialog.run.click()
+        assert "another design" in notice(dialog)
+        assert not controller.run.is_running
+        assert (out / DESIGN).read_text() == stored
+        controller.use_new_folder()
+        assert dialog.setup.out == out.with_name(f"{out.name} 2")
+        assert not controller.model.shown
+        controller.choose_out(out)
+        yield has_rows(controller, 1)
+        assert controller.choice.designs()[0].design.lines[0].ratio > 0.9
+
+    assert run_bodiless([], script) == 0
+
+
+def test_closing_the_program_ends_a_run(scans: Path) -> None:
+    left = []
+
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        controller, dialog = opened(window)
+        controller.choose_scans([str(scans)])
+        dialog.run.click()
+        yield has_rows(controller, 1)
+        left.append((controller.run, dialog.setup.out))
+
+    assert run_bodiless([], script) == 0
+    ((run, out),) = left
+    assert not run.is_running
+    summary = json.loads((out / "summary.json").read_text())
+    assert summary["interrupted"] or summary["rows"] == 3, "the run may have been faster"
+
+
+def test_without_the_packages_a_sentence_shows_how_to_get_them(
+    scans: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(batch, "missing_packages", lambda: ["dask", "pyarrow"])
+
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        controller, dialog = opened(window)
+        assert "dask, pyarrow" in notice(dialog)
+        assert "extra batch" in notice(dialog)
+        controller.choose_scans([str(scans)])
+        assert not dialog.run.isEnabled()
+
+    assert run_bodiless([], script) == 0
