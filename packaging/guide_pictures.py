@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 import advice_scenes
+import batch_scenes
 import scenes
 from scenes import (
     Scene,
@@ -103,6 +104,7 @@ ONCE = (
     Shot("even", bra, advice_scenes.even, {"size": SMALL}),
     Shot("worn", bra, advice_scenes.compared, {"size": SMALL}),
     Shot("pattern", _bare_mannequin, scenes.pattern, {"size": LARGE}),
+    Shot("batch", dressed_sample, batch_scenes.ran, {"size": SMALL}, small=True),
     Shot("lines-dark-ja", _person, step("lines"), DARK, small=True),
 )
 

@@ -162,13 +162,4 @@ def with_elastics(design: Design, elastics: Sequence[LineElastic]) -> Design:
 def content_key(designs: Sequence[BatchDesign]) -> str:
     """Return a key of all that decides the results of a run apart from its scans: designs and versions."""
     whole = {"designs": [each.as_data() for each in designs], "busk": __version__, "schema": SCHEMA_VERSION}
-    return hashlib.sha256(json.dumps(_with_floats(whole), sort_keys=True).encode()).hexdigest()
-
-
-def _with_floats(value: Any) -> Any:
-    """Return values of JSON with all numbers as floats: a design that is read from its file has these."""
-    if isinstance(value, dict):
-        return {key: _with_floats(each) for key, each in value.items()}
-    if isinstance(value, list | tuple):
-        return [_with_floats(each) for each in value]
-    return float(value) if isinstance(value, int) and not isinstance(value, bool) else value
+    return hashlib.sha256(json.dumps(whole, sort_keys=True).encode()).hexdigest()

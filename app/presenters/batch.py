@@ -37,7 +37,8 @@ def filter_titles() -> tuple[tuple[str, str], ...]:
 class BatchRow:
     """A body and variant; ``level`` is that of its verdict, or its state if there are no results.
 
-    ``numbers`` are the values of the numeric columns of the run, in their order, not a number where unknown.
+    ``numbers`` are the values of the numeric columns of the run, in their order, not a number where unknown;
+    ``picture`` and ``report`` are files in the folder of results, empty without one.
     """
 
     scan: str
@@ -47,6 +48,8 @@ class BatchRow:
     doubts: str
     sizes: Mapping[str, tuple[str, str]]
     numbers: array[float]
+    picture: str = ""
+    report: str = ""
 
     @property
     def key(self) -> tuple[str, str]:
@@ -100,6 +103,11 @@ def level_title(level: str) -> str:
     return states.get(level) or headline(level if level in _TONES else BAD)
 
 
+def row_heading(row: BatchRow) -> str:
+    """Return which row it is, with its verdict."""
+    return f"{row.name} \N{MIDDLE DOT} {row.variant} \N{MIDDLE DOT} {row.verdict}"
+
+
 def batch_row(values: Mapping[str, Any], numbers: Sequence[str]) -> BatchRow:
     """Return a row of results; ``numbers`` are the names of its numeric columns."""
     state = values.get("state") or "crashed"
@@ -115,6 +123,8 @@ def batch_row(values: Mapping[str, Any], numbers: Sequence[str]) -> BatchRow:
         values.get("doubts") or "",
         {key: (band, cup) for key, (band, cup) in sizes.items() if band and cup},
         array("d", [float("nan") if each is None else each for each in known]),
+        values.get("picture_file") or "",
+        values.get("report_file") or "",
     )
 
 

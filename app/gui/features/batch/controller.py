@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, Qt
 
 from app.batch.extra import missing_error, missing_packages
 from app.batch.inputs import list_scans
@@ -24,6 +24,8 @@ from app.gui.widgets.dialog import ask
 from app.gui.widgets.file_dialogs import ask_folder, ask_scans, free_name
 from app.i18n.catalog import listed, tr
 from app.presenters.batch import BatchRow, progress_text, scans_text
+from core.document.design import Design
+from core.document.document import Document
 from core.document.storage.project_file import safe_name
 from core.errors import UserError
 from core.messages import Message
@@ -96,6 +98,7 @@ class BatchController(QObject):
         dialog.open_requested.connect(self._open_current)
         dialog.page_requested.connect(self._open_page)
         dialog.show_folder_requested.connect(self._show_folder)
+        dialog.report_requested.connect(self._open_report)
         self.choice.changed.connect(self._offer_out)
         self.choice.failed.connect(self._refuse)
         self.results.loaded.connect(self.choice.keep)
@@ -203,7 +206,7 @@ class BatchController(QObject):
             return
         self.results.begin(setup.out, designs)
         self.choice.keep(designs)
-        request = RunRequest(setup.scans, designs, setup.out, setup.workers, setup.bodies.isChecked())
+        request = RunRequest(setup.scans, designs, setup.out, setup.workers, setup.files)
         try:
             self.run.start(request)
         except (UserError, OSError) as problem:
@@ -271,9 +274,6 @@ class BatchController(QObject):
         if not self._may_leave():
             return
         path = file.absolute()
-        if not (design.lines or design.elastics or design.targets):
-            self._open(design.on_scan(path))
-            return
         self._context.jobs.run(
             tr("Opening {name}…").format(name=path.name),
             lambda _: design_on_body(design, path),
@@ -283,10 +283,21 @@ class BatchController(QObject):
         )
 
     def _open(self, design: Any) -> None:
-        window = self._context.window
-        self._context.session.open_design(design)
+        """Open a design without a file of its own: a project whose body it is on stays as it is."""
+        window, session = self._context.window, self._context.session
+        if design.scan.member:
+            session.open_document(Document.single(design), unsaved=True)
+            once = Qt.ConnectionType.SingleShotConnection
+            session.opened.connect(lambda _: self._count_as_saved(design), once)
+        else:
+            session.open_design(design)
         window.raise_()
         window.activateWindow()
+
+    def _count_as_saved(self, design: Design) -> None:
+        """Ask nothing when it is left: the design is that of the results, the project is unchanged."""
+        if self._context.session.design is design:
+            self._context.session.undo_stack.setClean()
 
     def _open_current(self) -> None:
         row = self.dialog.table.current if self.dialog is not None else None
@@ -297,6 +308,13 @@ class BatchController(QObject):
         out = self._out
         if out is not None and not open_outside(out / PAGE):
             self._inform(tr("The page could not be opened."), str(out / PAGE))
+
+    def _open_report(self) -> None:
+        row = self.dialog.table.current if self.dialog is not None else None
+        if row is not None and self._out is not None and row.report:
+            report = self._out / row.report
+            if not (report.is_file() and open_outside(report)):
+                self._inform(tr("The report could not be opened."), str(report))
 
     def _show_folder(self) -> None:
         if self._out is not None:

@@ -8,11 +8,12 @@ from PySide6.QtGui import QDragEnterEvent, QDropEvent, QGuiApplication
 from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QLineEdit, QVBoxLayout, QWidget
 
 from app.gui.features.batch.distribution_card import DistributionCard
+from app.gui.features.batch.row_details import RowDetails
 from app.gui.features.batch.setup import BatchSetup
 from app.gui.features.batch.table import BatchModel, BatchTable
 from app.gui.status_bar import ProgressBar
 from app.gui.theme.stylesheet import font, label
-from app.gui.widgets.basic import EmptyState, Segment, sentence
+from app.gui.widgets.basic import EmptyState, Segment
 from app.gui.widgets.dialog import Dialog
 from app.gui.widgets.notification_bar import NotificationBar
 from app.gui.widgets.tooltip import set_tip
@@ -33,6 +34,7 @@ class BatchDialog(Dialog):
     open_requested = Signal()
     page_requested = Signal()
     show_folder_requested = Signal()
+    report_requested = Signal()
     dropped = Signal(list)
 
     def __init__(self, model: BatchModel) -> None:
@@ -108,10 +110,10 @@ class BatchDialog(Dialog):
         return row
 
     def _make_results(self) -> QHBoxLayout:
-        self.details = sentence("", "secondary")
-        self.details.setFixedHeight(2 * self.details.fontMetrics().lineSpacing() + 2)
+        self.details = RowDetails()
+        self.details.report_requested.connect(self.report_requested)
         column = QVBoxLayout()
-        column.setSpacing(8)
+        column.setSpacing(10)
         column.addWidget(self.table, 1)
         column.addWidget(self.details)
         row = QHBoxLayout()
@@ -161,10 +163,8 @@ class BatchDialog(Dialog):
         self.empty.setVisible(not some)
 
     def _show_row(self, marked: bool) -> None:
-        row = self.table.current
         self.open_body.setEnabled(marked)
-        self.details.setText(row.remarks if row is not None else "")
-        set_tip(self.details, row.remarks if row is not None else "")
+        self.details.show_row(self.table.current, self.setup.out)
 
     def _choose_filter(self, name: str) -> None:
         self._filter = name

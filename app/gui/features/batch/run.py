@@ -16,7 +16,7 @@ from PySide6.QtCore import QObject, QProcess, QProcessEnvironment, Signal
 
 from app.batch.batch_design import BatchDesign
 from app.batch.design_file import DESIGN, write_designs
-from app.i18n.catalog import tr
+from app.i18n.catalog import language, tr
 from app.presenters.batch import told_error
 
 _ALL_DONE, _SOME_LEFT, _BAD_INPUT = 0, 3, 2  # exit codes of the command
@@ -28,13 +28,16 @@ DONE, STOPPED, FAILED = "done", "stopped", "failed"
 
 @dataclass(frozen=True)
 class RunRequest:
-    """What is to be run: ``scans`` as the command takes them, ``designs``, and the folder of results."""
+    """What is to be run: ``scans`` as the command takes them, ``designs``, and the folder of results.
+
+    ``files`` are those that are wanted of each body beside its picture: "body" and "report".
+    """
 
     scans: Sequence[str]
     designs: Sequence[BatchDesign]
     out: Path
     workers: int
-    with_bodies: bool = False
+    files: frozenset[str] = frozenset()
 
 
 class BatchRun(QObject):
@@ -176,7 +179,8 @@ def _program() -> list[str]:
 def _words(request: RunRequest, designs: Path) -> list[str]:
     words = ["batch", *(os.path.abspath(scan) for scan in request.scans), "--design", str(designs)]
     words += ["--out", str(request.out), "--workers", str(request.workers), "--json", "--rows"]
-    return [*words, "--body"] if request.with_bodies else words
+    words += ["--body"] if "body" in request.files else []
+    return [*words, "--report", language()] if "report" in request.files else words
 
 
 def _environment() -> QProcessEnvironment:

@@ -118,13 +118,15 @@ class BatchSetup(QWidget):
         self.worker_field.edit.setProperty("ring", "true")
         self.worker_field.show_value(float(self.workers))
         self.worker_field.chosen.connect(self._choose_workers)
-        self.bodies = QCheckBox(tr("Save reshaped bodies"))
-        self.bodies.setFont(font("body"))
-        set_tip(self.bodies, tr("Write each reshaped body as PLY to the folder of results"))
+        self.bodies, self.reports = QCheckBox(tr("Bodies (PLY)")), QCheckBox(tr("Reports (PDF)"))
+        set_tip(self.bodies, tr("Write each reshaped body to the folder of results"))
+        set_tip(self.reports, tr("Write a report of each body to the folder of results; takes longer"))
         row = QHBoxLayout()
         row.setSpacing(16)
         row.addWidget(self.worker_field)
-        row.addWidget(self.bodies)
+        for box in (self.bodies, self.reports):
+            box.setFont(font("body"))
+            row.addWidget(box)
         row.addStretch(1)
         return row
 
@@ -156,6 +158,12 @@ class BatchSetup(QWidget):
             set_tip(box, tr("Compute variant {name}").format(name=name))
             box.clicked.connect(self.changed)
             self._boxes.addWidget(box)
+
+    @property
+    def files(self) -> frozenset[str]:
+        """Return the kinds of files that are wanted of each body."""
+        boxes = {"body": self.bodies, "report": self.reports}
+        return frozenset(kind for kind, box in boxes.items() if box.isChecked())
 
     @property
     def chosen_variants(self) -> list[str]:
