@@ -158,7 +158,7 @@ def test_the_results_of_another_design_are_shown_and_not_mixed(scans: Path) -> N
         controller.use_new_folder()
         assert dialog.setup.out == out.with_name(f"{out.name} 2")
         assert not controller.model.shown
-        controller.choose_out(out)
+        controller.open_results(out)
         yield has_rows(controller, 1)
         assert controller.choice.designs()[0].design.lines[0].ratio > 0.9
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QObject, Qt
 
+from app.batch.batch_design import BatchDesign
 from app.batch.extra import missing_error, missing_packages
 from app.batch.inputs import list_scans
 from app.batch.one_body import design_on_body
@@ -46,7 +47,7 @@ class BatchController(QObject):
         self.indicator, self.run, self.model = BatchIndicator(), BatchRun(self), BatchModel()
         self.dialog: BatchDialog | None = None
         self._counting: Job | None = None
-        self._own_out = False
+        self._own_out = self._adopts = False
         text = tr("Compute a design on many scans: table, distributions and files of results")
         context.actions.add("file", tr("Batch…"), tip=text, do=self.show)
         self.indicator.press.clicked.connect(self.show)
@@ -101,7 +102,7 @@ class BatchController(QObject):
         dialog.report_requested.connect(self._open_report)
         self.choice.changed.connect(self._offer_out)
         self.choice.failed.connect(self._refuse)
-        self.results.loaded.connect(self.choice.keep)
+        self.results.loaded.connect(self._take_designs)
         self._follow()
         self._check_packages()
         return dialog
@@ -156,7 +157,21 @@ class BatchController(QObject):
                 )
             )
         elif path:
-            self.choose_out(Path(path))
+            self.open_results(Path(path))
+
+    def open_results(self, folder: Path) -> None:
+        """Show the results in a folder, and choose their design: Run continues them."""
+        self._adopts = True
+        self.choose_out(folder)
+
+    def _take_designs(self, designs: list[BatchDesign]) -> None:
+        """Offer the designs of results that were read; they are chosen if the results were opened."""
+        if self._adopts or not self.choice.designs():
+            self.choice.keep(designs)
+        else:
+            self.choice.offer(designs)
+        self._adopts = False
+        self._follow()
 
     def _offer_out(self) -> None:
         """Offer a folder beside the scans, named after them and the design, until another one is chosen."""

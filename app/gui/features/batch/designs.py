@@ -76,11 +76,9 @@ class DesignChoice(QObject):
         self._stored = self._fixed = list(designs)
         self._choose(STORED)
 
-    def forget(self) -> None:
-        """Offer the designs of results no longer."""
-        self._stored = []
-        if self.kind == STORED:
-            self._choose(OPEN)
+    def offer(self, designs: Sequence[BatchDesign]) -> None:
+        """Offer the designs of the results shown; what is chosen stays."""
+        self._stored = list(designs)
 
     def follow(self) -> None:
         """Show the open design with its variants, if it is chosen."""

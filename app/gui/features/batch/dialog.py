@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QDragEnterEvent, QDropEvent, QGuiApplication
+from PySide6.QtGui import QDragEnterEvent, QDropEvent, QGuiApplication, QResizeEvent
 from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QLineEdit, QVBoxLayout, QWidget
 
 from app.gui.features.batch.distribution_card import DistributionCard
@@ -20,7 +20,8 @@ from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
 from app.presenters.batch import ALL, filter_titles
 
-_SIZE, _LEAST = (1180, 760), (900, 600)
+_SIZE, _LEAST = (1280, 800), (900, 600)
+_LOW = 680  # of a window without room for pictures [px]
 
 
 class BatchDialog(Dialog):
@@ -42,9 +43,6 @@ class BatchDialog(Dialog):
         self.setWindowFlags(Qt.WindowType.Window)
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose, False)
         self.setAcceptDrops(True)
-        self.setMinimumSize(*_LEAST)
-        room = QGuiApplication.primaryScreen().availableGeometry()
-        self.resize(min(_SIZE[0], room.width() - 20), min(_SIZE[1], room.height() - 60))
         self.model, self.setup, self.notices = model, BatchSetup(), NotificationBar()
         self.table, self.card = BatchTable(model), DistributionCard()
         self.body.insertWidget(0, self.notices)
@@ -67,6 +65,9 @@ class BatchDialog(Dialog):
         self.body.addStretch()
         self._make_foot()
         self.table.marked.connect(self._show_row)
+        room = QGuiApplication.primaryScreen().availableGeometry()
+        self.setMinimumSize(*_LEAST)
+        self.resize(min(_SIZE[0], room.width() - 20), min(_SIZE[1], room.height() - 60))
         self.show_rows(False)
         self.show_state(running=False)
         self.show_progress("", None, running=False)
@@ -172,6 +173,11 @@ class BatchDialog(Dialog):
 
     def _apply(self) -> None:
         self.model.set_filter(self.search.text(), self._filter)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Leave the room to the table in a low window."""
+        super().resizeEvent(event)
+        self.details.set_low(self.height() < _LOW)
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         """Take scans and folders."""

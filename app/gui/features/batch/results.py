@@ -53,7 +53,7 @@ class BatchResults(QObject):
         if folder != self._folder:
             self._folder = folder
             self._begin([])
-            self.load()
+        self.load()
 
     def load(self) -> None:
         """Read the results of the folder again."""

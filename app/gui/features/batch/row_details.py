@@ -14,7 +14,7 @@ from app.gui.widgets.tooltip import set_tip
 from app.i18n.catalog import tr
 from app.presenters.batch import BatchRow, row_heading
 
-_HEIGHT, _PICTURE = 116, (72, 96)
+_HEIGHT, _LOW_HEIGHT, _PICTURE = 116, 74, (72, 96)
 
 
 class RowDetails(QFrame):
@@ -42,10 +42,15 @@ class RowDetails(QFrame):
         row.addWidget(self.picture)
         row.addLayout(words, 1)
         row.addWidget(self.report, alignment=Qt.AlignmentFlag.AlignTop)
+        self._row: BatchRow | None = None
+        self._low = False
         self.show_row(None, None)
 
     def show_row(self, row: BatchRow | None, folder: Path | None) -> None:
         """Show a row with its files in a folder of results."""
+        if row is not None and row is self._row:
+            return
+        self._row = row
         missing = tr("Select a row to see its remarks. Double-click a row to open the body.")
         self.heading.setText(row_heading(row) if row is not None else "")
         self.heading.setVisible(row is not None)
@@ -65,4 +70,13 @@ class RowDetails(QFrame):
             )
             picture.setDevicePixelRatio(ratio)
         self.picture.setPixmap(picture)
-        self.picture.setVisible(not picture.isNull())
+        self._place_picture()
+
+    def set_low(self, low: bool) -> None:
+        """Take less height, without the picture."""
+        self._low = low
+        self.setFixedHeight(_LOW_HEIGHT if low else _HEIGHT)
+        self._place_picture()
+
+    def _place_picture(self) -> None:
+        self.picture.setVisible(not self._low and not self.picture.pixmap().isNull())

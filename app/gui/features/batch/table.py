@@ -20,7 +20,7 @@ from app.presenters.batch import ALL, BatchRow, Cells
 _Index = QModelIndex | QPersistentModelIndex
 _NUMBERS = ("bust", "underbust", "lift")
 _WIDTHS = {
-    "scan": 160,
+    "scan": 156,
     "variant": 120,
     "verdict": 150,
     "bust": 72,
