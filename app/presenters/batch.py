@@ -13,6 +13,7 @@ from typing import Any
 from app.i18n.catalog import joined, listed, number, tr, tr_plural
 from app.i18n.lengths import length_number, length_unit
 from app.presenters.assessment import headline
+from app.presenters.english_text import shown_text
 from app.presenters.messages import sentence_text
 from core.garment.assessment import BAD, CAUTION, GOOD
 from core.measurements.sizes import built_in
@@ -37,8 +38,9 @@ def filter_titles() -> tuple[tuple[str, str], ...]:
 class BatchRow:
     """A body and variant; ``level`` is that of its verdict, or its state if there are no results.
 
-    ``numbers`` are the values of the numeric columns of the run, in their order, not a number where unknown;
-    ``picture`` and ``report`` are files in the folder of results, empty without one.
+    ``message`` and ``doubts`` are English, as in the files. ``numbers`` are the values of the numeric columns
+    of the run, in their order, not a number where unknown; ``picture`` and ``report`` are files in the folder
+    of results, empty without one.
     """
 
     scan: str
@@ -74,7 +76,7 @@ class BatchRow:
     @cached_property
     def remarks(self) -> str:
         """Return all that is to be known of the row."""
-        return joined((self.message, self.doubts))
+        return joined((shown_text(self.message), shown_text(self.doubts)))
 
     @property
     def tone(self) -> str:
@@ -94,7 +96,7 @@ class BatchRow:
 
     @cached_property
     def _searched(self) -> str:
-        return " ".join((self.scan, self.variant, self.verdict, self.remarks)).lower()
+        return " ".join((self.scan, self.variant, self.verdict, self.message, self.doubts)).lower()
 
 
 def level_title(level: str) -> str:
@@ -178,7 +180,8 @@ class Cells:
             case "verdict":
                 return False, -row.doubt, ""
             case _:
-                return False, 0.0, self.text(row, column).lower()
+                text = row.message if column == "remarks" else self.text(row, column)
+                return False, 0.0, text.lower()
         return value != value, value if value == value else 0.0, ""  # noqa: PLR0124 (not a number)
 
     def tip(self, row: BatchRow, column: str) -> str:
