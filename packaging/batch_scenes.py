@@ -28,7 +28,7 @@ def ran(window: MainWindow) -> QWidget:
     dialog.run.click()
     wait_for(lambda: not controller.run.is_running)
     controller.model.arrange()
-    dialog.table.setCurrentIndex(controller.model.index(2, 0))
+    dialog.table.setCurrentIndex(controller.model.index(1, 0))
     dialog.table.setFocus()
     return dialog
 

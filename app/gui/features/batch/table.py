@@ -22,7 +22,7 @@ _NUMBERS = ("bust", "underbust", "lift")
 _WIDTHS = {
     "scan": 156,
     "variant": 120,
-    "verdict": 150,
+    "verdict": 176,
     "bust": 72,
     "underbust": 104,
     "size": 72,
@@ -159,7 +159,6 @@ class BatchTable(QTreeView):
         self.setModel(model)
         self.setRootIsDecorated(False)
         self.setUniformRowHeights(True)
-        self.setAllColumnsShowFocus(True)
         self.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
         self.setVerticalScrollMode(QAbstractItemView.ScrollMode.ScrollPerPixel)
         self.setAccessibleName(tr("Results"))
