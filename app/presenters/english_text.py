@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache, lru_cache
 
-from app.i18n.catalog import language, tr_context, translations
+from app.i18n.catalog import language, translations
 from app.i18n.lengths import length, length_unit
 from app.presenters.messages import line_title
 from core.messages import (
@@ -82,9 +82,9 @@ def _value(text: str, code: str) -> str:
     if title.lower().replace("-", " ") != text.lower().replace("-", " "):
         return title
     for kind in _NAMES:
-        known = tr_context(kind.context, text)
-        if known != text:
-            return known
+        known = translations(code).get((kind.context, text))
+        if known and known[0]:
+            return known[0]
     return _shown(text, code, length_unit()) if text.endswith(".") else text
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QPixmap
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QVBoxLayout
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QVBoxLayout
 
 from app.gui.theme.stylesheet import label, set_tag
 from app.gui.widgets.basic import ElidedLabel, button, sentence
@@ -26,7 +26,7 @@ class RowDetails(QFrame):
         super().__init__()
         set_tag(self, "kind", "card")
         self.setFixedHeight(_HEIGHT)
-        self.picture, self.heading = QLabel(), ElidedLabel()
+        self.picture, self.heading = label(), ElidedLabel()
         self.picture.setFixedSize(*_PICTURE)
         self.picture.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self.heading.setFont(label("", "name").font())
