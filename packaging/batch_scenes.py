@@ -19,16 +19,16 @@ COUNT = 16
 def ran(window: MainWindow) -> QWidget:
     """Run the design on a folder of scans, and select a body that is to be checked."""
     os.environ["HOME"] = HOUSE.name  # a picture shows no folder of this machine
-    controller = window.batch_controller
-    controller.show()
-    dialog = controller.dialog
-    assert dialog is not None
+    window.batch_controller.show()
+    workspace = window.batch_controller.workspace
+    assert workspace is not None
+    dialog = workspace.dialog
     dialog.resize(1180, 760)
-    controller.choose_scans([str(_scans())])
+    workspace.choose_scans([str(_scans())])
     dialog.run.click()
-    wait_for(lambda: not controller.run.is_running)
-    controller.model.arrange()
-    dialog.table.setCurrentIndex(controller.model.index(1, 0))
+    wait_for(lambda: not workspace.run.is_running)
+    workspace.model.arrange()
+    dialog.table.setCurrentIndex(workspace.model.index(1, 0))
     dialog.table.setFocus()
     return dialog
 

@@ -21,6 +21,9 @@ from core.measurements.sizes import built_in
 NOT_COMPUTED = ("refused", "crashed", "timeout")
 """States of rows without results; the level of the others is that of their verdict."""
 
+FAILURES = NOT_COMPUTED[1:]
+"""States that can be others when a body is computed again."""
+
 _DOUBT = {**dict.fromkeys(NOT_COMPUTED, 8), BAD: 4, CAUTION: 2, GOOD: 0}
 _TONES = {GOOD: "ok", CAUTION: "warn", BAD: "bad"}
 _ICONS = {GOOD: "check-circle", CAUTION: "warning", BAD: "warning-octagon"}
@@ -231,6 +234,14 @@ def paths_text(paths: Sequence[str]) -> str:
         return "".join(paths)
     others = tr_plural("{path} and {count} other", "{path} and {count} others", len(paths) - 1)
     return others.format(path=paths[0], count=number(len(paths) - 1, 0))
+
+
+def failures_text(count: int) -> str:
+    """Return how many bodies failed or ran out of time."""
+    text = tr_plural(
+        "{count} body failed or ran out of time.", "{count} bodies failed or ran out of time.", count
+    )
+    return text.format(count=number(count, 0))
 
 
 def scans_text(count: int) -> str:

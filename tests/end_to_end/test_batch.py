@@ -13,9 +13,8 @@ from PySide6.QtTest import QTest
 from window_tools import Script, run_bodiless, settled
 
 from app.batch.design_file import DESIGN
-from app.gui.features.batch import controller as batch
-from app.gui.features.batch.controller import BatchController
 from app.gui.features.batch.dialog import BatchDialog
+from app.gui.features.batch.workspace import BatchWorkspace
 from app.gui.main_window import MainWindow
 
 pytestmark = pytest.mark.usefixtures("empty_house")
@@ -25,7 +24,7 @@ pytestmark = pytest.mark.usefixtures("empty_house")
 def answers(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """Answer the question about a run that goes on; at the end it is stopped."""
     given = ["quit"]
-    monkeypatch.setattr(batch, "ask", lambda *_: given[0])
+    monkeypatch.setattr("app.gui.features.batch.controller.ask", lambda *_: given[0])
     return given
 
 
@@ -40,16 +39,16 @@ def scans(tmp_path: Path, mannequin: Path, person: Path) -> Path:
     return folder
 
 
-def opened(window: MainWindow) -> tuple[BatchController, BatchDialog]:
-    controller = window.batch_controller
-    controller.show()
-    assert controller.dialog is not None
-    controller.dialog.setup.workers = 1
-    return controller, controller.dialog
+def opened(window: MainWindow) -> tuple[BatchWorkspace, BatchDialog]:
+    window.batch_controller.show()
+    workspace = window.batch_controller.workspace
+    assert workspace is not None
+    workspace.dialog.setup.workers = 1
+    return workspace, workspace.dialog
 
 
-def ended(controller: BatchController) -> Callable[[], bool]:
-    return lambda: not controller.run.is_running
+def ended(workspace: BatchWorkspace) -> Callable[[], bool]:
+    return lambda: not workspace.run.is_running
 
 
 def notice(dialog: BatchDialog) -> str:
@@ -57,17 +56,17 @@ def notice(dialog: BatchDialog) -> str:
     return "" if shown is None else f"{shown.sentence} {shown.hint}"
 
 
-def has_rows(controller: BatchController, count: int) -> Callable[[], bool]:
-    return lambda: len(controller.model.shown) >= count
+def has_rows(workspace: BatchWorkspace, count: int) -> Callable[[], bool]:
+    return lambda: len(workspace.model.shown) >= count
 
 
 def test_a_run_goes_on_while_its_window_is_closed_and_rows_open_bodies(scans: Path) -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        controller, dialog = opened(window)
+        workspace, dialog = opened(window)
         assert not dialog.run.isEnabled()
         assert dialog.empty.isVisible()
-        controller.choose_scans([str(scans)])
+        workspace.choose_scans([str(scans)])
         yield lambda: "3 scans" in dialog.setup.scan_field.accessibleDescription()
         out = dialog.setup.out
         assert out == scans.parent / "scans mannequin batch"
@@ -75,34 +74,34 @@ def test_a_run_goes_on_while_its_window_is_closed_and_rows_open_bodies(scans: Pa
         assert dialog.stop.isVisible()
         assert not dialog.setup.isEnabled()
         dialog.close()
-        yield lambda: "of 3" in window.batch_controller.indicator.press.text()
-        controller.indicator.press.click()
+        yield lambda: "of 3" in window.batch_window.batch_controller.indicator.press.text()
+        window.batch_controller.indicator.press.click()
         assert dialog.isVisible()
-        yield has_rows(controller, 3)
-        yield ended(controller)
-        assert not controller.indicator.isVisible()
+        yield has_rows(workspace, 3)
+        yield ended(workspace)
+        assert not window.batch_controller.indicator.isVisible()
         assert dialog.progress.text() == "Run finished."
         assert dialog.run.isVisible()
         assert dialog.page.isEnabled()
-        first = controller.model.shown[0]
+        first = workspace.model.shown[0]
         assert (first.name, first.verdict) == ("broken.ply", "Refused")
         assert "empty" in first.remarks
         dialog.doubtful.click()
-        assert [row.name for row in controller.model.shown] == ["anna.ply", "berta.ply", "broken.ply"]
+        assert [row.name for row in workspace.model.shown] == ["anna.ply", "berta.ply", "broken.ply"]
         assert dialog.card.plot.shown is not None
         assert sum(counts.sum() for _, counts in dialog.card.plot.shown.series) == 2
         dialog.search.setText("berta")
-        assert [row.name for row in controller.model.shown] == ["berta.ply"]
+        assert [row.name for row in workspace.model.shown] == ["berta.ply"]
         dialog.search.clear()
         design = window.session.design
-        dialog.table.setCurrentIndex(controller.model.index(1, 0))
+        dialog.table.setCurrentIndex(workspace.model.index(1, 0))
         QTest.keyClick(dialog.table, Qt.Key.Key_Return)
         yield lambda: window.session.name == "berta"
         assert design is not None
         assert window.session.design is not None
         assert window.session.design.lines == design.lines
         assert Path(window.session.design.scan.path) == scans / "berta.ply"
-        assert controller.choice.designs()[0].name == "mannequin", "the design of the run stays chosen"
+        assert workspace.choice.designs()[0].name == "mannequin", "the design of the run stays chosen"
 
     assert run_bodiless([], script) == 0
 
@@ -113,26 +112,26 @@ def test_a_stopped_run_keeps_its_results_and_goes_on(scans: Path, answers: list[
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        controller, dialog = opened(window)
-        controller.choose_scans([str(scans)])
+        workspace, dialog = opened(window)
+        workspace.choose_scans([str(scans)])
         dialog.run.click()
-        yield has_rows(controller, 1)
+        yield has_rows(workspace, 1)
         answers[0] = ""
         window.close()
         assert window.isVisible(), "quitting is confirmed while a run goes on"
         answers[0] = "quit"
         dialog.stop.click()
         assert not dialog.stop.isEnabled()
-        yield ended(controller)
+        yield ended(workspace)
         assert "stopped" in dialog.progress.text()
-        yield has_rows(controller, 1)
-        kept, out = len(controller.model.shown), dialog.setup.out
+        yield has_rows(workspace, 1)
+        kept, out = len(workspace.model.shown), dialog.setup.out
         assert out is not None
         assert json.loads((out / "summary.json").read_text())["rows"] == kept
         dialog.run.click()
-        yield ended(controller)
-        yield has_rows(controller, 6)
-        assert len(controller.model.shown) == 6
+        yield ended(workspace)
+        yield has_rows(workspace, 6)
+        assert len(workspace.model.shown) == 6
         assert dialog.progress.text() == "Run finished."
 
     assert run_bodiless([], script) == 0
@@ -141,26 +140,26 @@ def test_a_stopped_run_keeps_its_results_and_goes_on(scans: Path, answers: list[
 def test_the_results_of_another_design_are_shown_and_not_mixed(scans: Path) -> None:
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        controller, dialog = opened(window)
-        controller.choose_scans([str(scans / "anna.ply")])
+        workspace, dialog = opened(window)
+        workspace.choose_scans([str(scans / "anna.ply")])
         dialog.run.click()
-        yield ended(controller)
-        yield has_rows(controller, 1)
+        yield ended(workspace)
+        yield has_rows(workspace, 1)
         out = dialog.setup.out
         assert out is not None
         stored = (out / DESIGN).read_text()
         window.session.edit(lambda design: design.with_line("mid-bust", 0.9), "shorter")
-        controller.choice.choose_open()
+        workspace.choice.choose_open()
         dialog.run.click()
         assert "another design" in notice(dialog)
-        assert not controller.run.is_running
+        assert not workspace.run.is_running
         assert (out / DESIGN).read_text() == stored
-        controller.use_new_folder()
+        workspace.use_new_folder()
         assert dialog.setup.out == out.with_name(f"{out.name} 2")
-        assert not controller.model.shown
-        controller.open_results(out)
-        yield has_rows(controller, 1)
-        assert controller.choice.designs()[0].design.lines[0].ratio > 0.9
+        assert not workspace.model.shown
+        workspace.open_results(out)
+        yield has_rows(workspace, 1)
+        assert workspace.choice.designs()[0].design.lines[0].ratio > 0.9
 
     assert run_bodiless([], script) == 0
 
@@ -170,11 +169,11 @@ def test_closing_the_program_ends_a_run(scans: Path) -> None:
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        controller, dialog = opened(window)
-        controller.choose_scans([str(scans)])
+        workspace, dialog = opened(window)
+        workspace.choose_scans([str(scans)])
         dialog.run.click()
-        yield has_rows(controller, 1)
-        left.append((controller.run, dialog.setup.out))
+        yield has_rows(workspace, 1)
+        left.append((workspace.run, dialog.setup.out))
 
     assert run_bodiless([], script) == 0
     ((run, out),) = left
@@ -186,14 +185,14 @@ def test_closing_the_program_ends_a_run(scans: Path) -> None:
 def test_without_the_packages_a_sentence_shows_how_to_get_them(
     scans: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(batch, "missing_packages", lambda: ["dask", "pyarrow"])
+    monkeypatch.setattr("app.gui.features.batch.workspace.missing_packages", lambda: ["dask", "pyarrow"])
 
     def script(window: MainWindow) -> Script:
         yield settled(window)
-        controller, dialog = opened(window)
+        workspace, dialog = opened(window)
         assert "dask, pyarrow" in notice(dialog)
         assert "extra batch" in notice(dialog)
-        controller.choose_scans([str(scans)])
+        workspace.choose_scans([str(scans)])
         assert not dialog.run.isEnabled()
 
     assert run_bodiless([], script) == 0

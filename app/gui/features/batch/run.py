@@ -30,7 +30,8 @@ DONE, STOPPED, FAILED = "done", "stopped", "failed"
 class RunRequest:
     """What is to be run: ``scans`` as the command takes them, ``designs``, and the folder of results.
 
-    ``files`` are those that are wanted of each body beside its picture: "body" and "report".
+    ``files`` are those that are wanted of each body beside its picture: "body" and "report". With ``retry``
+    bodies that failed or ran out of time are computed again.
     """
 
     scans: Sequence[str]
@@ -38,6 +39,7 @@ class RunRequest:
     out: Path
     workers: int
     files: frozenset[str] = frozenset()
+    retry: bool = False
 
 
 class BatchRun(QObject):
@@ -139,7 +141,8 @@ class BatchRun(QObject):
             self.error = told_error(event)
 
     def _fail_to_start(self, problem: QProcess.ProcessError) -> None:
-        if problem == QProcess.ProcessError.FailedToStart:
+        if problem == QProcess.ProcessError.FailedToStart and self._process is not None:
+            self.error = tr("The batch run could not be started."), self._process.errorString()
             self._end()
 
     def _end(self) -> None:
@@ -179,6 +182,7 @@ def _program() -> list[str]:
 def _words(request: RunRequest, designs: Path) -> list[str]:
     words = ["batch", *(os.path.abspath(scan) for scan in request.scans), "--design", str(designs)]
     words += ["--out", str(request.out), "--workers", str(request.workers), "--json", "--rows"]
+    words += ["--retry"] if request.retry else []
     words += ["--body"] if "body" in request.files else []
     return [*words, "--report", language()] if "report" in request.files else words
 
