@@ -74,7 +74,7 @@ def test_a_run_goes_on_while_its_window_is_closed_and_rows_open_bodies(scans: Pa
         assert dialog.stop.isVisible()
         assert not dialog.setup.isEnabled()
         dialog.close()
-        yield lambda: "of 3" in window.batch_window.batch_controller.indicator.press.text()
+        yield lambda: "of 3" in window.batch_controller.indicator.press.text()
         window.batch_controller.indicator.press.click()
         assert dialog.isVisible()
         yield has_rows(workspace, 3)
