@@ -12,10 +12,15 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from window_tools import Script, run_bodiless, settled
 
+from app.batch.batch_design import batch_design
 from app.batch.design_file import DESIGN
+from app.batch.store import ResultStore
 from app.gui.features.batch.dialog import BatchDialog
 from app.gui.features.batch.workspace import BatchWorkspace
 from app.gui.main_window import MainWindow
+from core.document.design import Design, ScanSource
+from core.document.document import Document
+from core.document.storage.project_file import read_scan_file, save_project
 
 pytestmark = pytest.mark.usefixtures("empty_house")
 
@@ -160,6 +165,44 @@ def test_the_results_of_another_design_are_shown_and_not_mixed(scans: Path) -> N
         workspace.open_results(out)
         yield has_rows(workspace, 1)
         assert workspace.choice.designs()[0].design.lines[0].ratio > 0.9
+
+    assert run_bodiless([], script) == 0
+
+
+def test_rows_of_the_command_open_with_the_lengths_of_their_body(tmp_path: Path, person: Path) -> None:
+    project, out = tmp_path / "clara.busk", tmp_path / "results"
+    save_project(
+        project,
+        Document.single(Design(ScanSource(str(person)))),
+        read_scan_file(ScanSource(str(person))),
+        None,
+    )
+    before = project.read_bytes()
+    store = ResultStore(out, [batch_design("bra", Design(ScanSource("")), ["mid-bust=-20mm"], [], [])])
+    known = {"scan_sha256": "d", "variant": "bra", "state": "done", "verdict": "good"}
+    store.add([{"scan": str(person), **known}, {"scan": "clara.busk", **known}])
+    store.flush()
+    store.close()
+
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        session = window.session
+        workspace, dialog = opened(window)
+        workspace.open_results(out)
+        yield has_rows(workspace, 2)
+        assert dialog.setup.design_field.accessibleDescription() == "bra (design of the results)"
+        rows = {row.name: row for row in workspace.model.shown}
+        workspace.open_row(rows[person.name])
+        yield lambda: session.design is not None and Path(session.design.scan.path) == person
+        assert session.design is not None
+        assert 0.9 < session.design.ratio("mid-bust") < 1.0
+        workspace.open_row(rows["clara.busk"])
+        yield lambda: session.design is not None and bool(session.design.scan.member)
+        assert session.design is not None
+        assert session.design.ratio("mid-bust") < 1.0
+        assert session.path is None, "saving asks for a place: the project is that of the customer"
+        assert not session.unsaved
+        assert project.read_bytes() == before
 
     assert run_bodiless([], script) == 0
 
