@@ -29,6 +29,7 @@ def test_a_sentence_is_that_of_its_message(code: str, unit: str) -> None:
 
 
 def test_names_of_lines_are_translated() -> None:
+    assert shown_text(str(PRESSURE)) == "Strap left: contact pressure 10.4 kPa (78 mmHg)."
     with using_language("ja"):
         assert shown_text(str(PRESSURE)) == "ストラップ左：接触圧 10.4 kPa（78 mmHg）。"
 
