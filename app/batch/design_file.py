@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from app.batch.batch_design import SCHEMA_VERSION, BatchDesign, content_key, design_of_data
+from app.batch.schema import DESIGN
 from core import __version__
 from core.errors import ProjectError, UserError, reason_of
 from core.files.atomic_write import write_text
 from core.files.regular_file import read_text
 from core.messages import Message
 
-DESIGN = "design.json"
 _LARGEST = 50_000_000  # bytes of a file of designs
 
 

@@ -7,7 +7,7 @@ from importlib.util import find_spec
 from core.errors import UserError
 from core.messages import Message
 
-PACKAGES = ("dask", "distributed", "psutil", "pyarrow")
+PACKAGES = ("cryptography", "dask", "distributed", "psutil", "pyarrow")
 
 
 def missing_error(why: str) -> UserError:

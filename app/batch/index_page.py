@@ -16,6 +16,7 @@ from app.batch.batch_design import BatchDesign
 from app.batch.body_files import FOLDERS
 from app.batch.one_body import Row
 from app.batch.schema import DONE, columns_of
+from app.batch.svg_plots import histogram, number_axis
 
 MOST_ROWS = 20_000
 """Rows of the page: a browser shows no more with ease. The doubtful come first, the table has all."""
@@ -28,7 +29,6 @@ SHOWN = (
 
 _LINE_PARTS = ("cut_length_", "pressure_max_")
 _PLOTTED = ("bust_mm", "underbust_mm", "lift_left_mm", "target_miss_mm", *_LINE_PARTS)
-_BINS = 20
 _DOUBTFUL = {"": 3, "bad": 2, "caution": 1, "good": 0}
 
 
@@ -91,19 +91,9 @@ def _counts(rows: Sequence[Row]) -> str:
 
 
 def _plot(name: str, unit: str, table: pa.Table) -> str:
-    """Return the distribution of a column as SVG with its mean and standard deviation, empty without one."""
+    """Return the distribution of a column with its mean and standard deviation, empty without one."""
     values = table.column(name).drop_null().to_numpy()
     if len(values) < 2 or np.ptp(values) == 0.0:
         return ""
-    counts, edges = np.histogram(values, _BINS)
-    heights = 60.0 * counts / counts.max()
-    bars = "".join(
-        f'<rect x="{10 * number}" y="{60.0 - height:.1f}" width="9" height="{height:.1f}"/>'
-        for number, height in enumerate(heights)
-    )
-    low, high = (f"{edge:.4g}" for edge in edges[[0, -1]])
-    ends = f'<text x="0" y="74">{low}</text><text x="200" y="74" text-anchor="end">{high}</text>'
-    title = f"{escape(label_of(name, unit))} [{escape(unit)}]"
     about = f"mean {values.mean():.4g}, SD {values.std(ddof=1):.3g}"
-    picture = f'<svg viewBox="0 0 200 78" role="img" aria-label="{title}: {about}">{bars}{ends}</svg>'
-    return f"<figure><figcaption>{title}</figcaption>{picture}<p>{about}</p></figure>"
+    return histogram(f"{label_of(name, unit)} [{unit}]: {about}", number_axis("", values), values)

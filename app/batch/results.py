@@ -12,12 +12,12 @@ from typing import Any
 import numpy as np
 
 from app.batch.batch_design import SCHEMA_VERSION
-from app.batch.schema import DONE
+from app.batch.extra import missing_error
+from app.batch.schema import DESIGN, DONE, TABLE
 from core.errors import UserError, reason_of
 from core.geometry.mesh import Floats, Indices
 from core.messages import Message
 
-TABLE, DESIGN = "results.parquet", "design.json"
 _NEEDED = ("scan", "scan_sha256", "variant", "state")
 
 
@@ -122,10 +122,7 @@ def _read_table(folder: Path) -> tuple[dict[str, Any], dict[str, str]]:
         import pyarrow as pa  # noqa: PLC0415 (an extra)
         import pyarrow.parquet as pq  # noqa: PLC0415
     except ImportError as missing:
-        raise UserError(
-            Message("Batch results need packages that are not installed: {why}.", why=str(missing)),
-            Message("Install Busk from its source with the extra batch."),
-        ) from missing
+        raise missing_error(str(missing)) from missing
     try:
         parts = sorted((folder / TABLE).glob("part-*.parquet"))
         tables = [pq.ParquetFile(part).read() for part in parts]

@@ -11,6 +11,10 @@ from core.landmarks.types import SIDES
 from core.measurements.definitions import DEFINITIONS
 from core.measurements.sizes import built_in
 
+TABLE, CSV, PAGE = "results.parquet", "results.csv", "index.html"
+SUMMARY, DESIGN = "summary.json", "design.json"
+"""Files in the folder of a run."""
+
 TEXT, NUMBER = "text", "number"
 DONE, REFUSED, CRASHED, TIMEOUT = STATES = ("done", "refused", "crashed", "timeout")
 """What became of a body: only one that is done has results."""

@@ -16,19 +16,28 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from app.batch.batch_design import SCHEMA_VERSION, BatchDesign, content_key
-from app.batch.design_file import DESIGN, other_design_error, stored_key, write_designs
+from app.batch.design_file import other_design_error, stored_key, write_designs
 from app.batch.index_page import index_page
 from app.batch.one_body import Row
-from app.batch.schema import CRASHED, STATES, TEXT, TIMEOUT, Column, columns_of
-from app.batch.stored_rows import CSV, PAGE
+from app.batch.schema import (
+    CRASHED,
+    CSV,
+    DESIGN,
+    PAGE,
+    STATES,
+    SUMMARY,
+    TABLE,
+    TEXT,
+    TIMEOUT,
+    Column,
+    columns_of,
+)
 from core import __version__
 from core.document.storage.file_lock import FolderLock
 from core.errors import ProjectError, reason_of
 from core.export.csv_cells import ENCODING, cell
 from core.files.atomic_write import atomic_path, write_text
 from core.messages import Message
-
-TABLE, SUMMARY = "results.parquet", "summary.json"
 
 FLUSH_SECONDS, FLUSH_SHARE, MOST_ROWS = 2.0, 0.01, 5000
 """Rows are written after so many seconds, or after this share of the time that the run has taken, so that a

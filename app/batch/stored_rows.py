@@ -9,14 +9,12 @@ from contextlib import suppress
 from pathlib import Path
 
 from app.batch.batch_design import BatchDesign
-from app.batch.design_file import DESIGN, read_designs
+from app.batch.design_file import read_designs
 from app.batch.one_body import Row
-from app.batch.schema import TEXT, columns_of
+from app.batch.schema import CSV, DESIGN, TEXT, columns_of
 from core.errors import ProjectError, reason_of
 from core.messages import Message
 from core.progress import Progress, quiet
-
-CSV, PAGE = "results.csv", "index.html"
 
 
 def has_results(folder: Path) -> bool:

@@ -13,7 +13,7 @@ from PySide6.QtTest import QTest
 from window_tools import Script, run_bodiless, settled
 
 from app.batch.batch_design import batch_design
-from app.batch.design_file import DESIGN
+from app.batch.schema import DESIGN
 from app.batch.store import ResultStore
 from app.gui.features.batch.dialog import BatchDialog
 from app.gui.features.batch.workspace import BatchWorkspace

@@ -8,7 +8,8 @@ import pytest
 from batch_tools import parquet_rows
 
 from app.batch.batch_design import batch_design, content_key
-from app.batch.design_file import DESIGN, is_design_file, read_designs, stored_key, write_designs
+from app.batch.design_file import is_design_file, read_designs, stored_key, write_designs
+from app.batch.schema import DESIGN
 from app.batch.store import ResultStore
 from app.batch.stored_rows import has_results, read_results, scan_file
 from core.document.design import Design, ScanSource

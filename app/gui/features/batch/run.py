@@ -15,7 +15,8 @@ from typing import Any
 from PySide6.QtCore import QObject, QProcess, QProcessEnvironment, Signal
 
 from app.batch.batch_design import BatchDesign
-from app.batch.design_file import DESIGN, write_designs
+from app.batch.design_file import write_designs
+from app.batch.schema import DESIGN
 from app.i18n.catalog import language, tr
 from app.presenters.batch import told_error
 

@@ -12,7 +12,8 @@ from app.batch.batch_design import BatchDesign
 from app.batch.extra import missing_error, missing_packages
 from app.batch.inputs import list_scans
 from app.batch.one_body import design_on_body
-from app.batch.stored_rows import PAGE, has_results, scan_file
+from app.batch.schema import PAGE
+from app.batch.stored_rows import has_results, scan_file
 from app.gui.features.batch.designs import STORED, DesignChoice
 from app.gui.features.batch.dialog import BatchDialog
 from app.gui.features.batch.results import BatchResults
