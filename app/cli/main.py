@@ -7,9 +7,6 @@ import os
 import sys
 from collections.abc import Sequence
 
-import scipy.linalg  # noqa: F401  its BLAS must be there to be held to one thread
-from threadpoolctl import threadpool_limits
-
 from app.cli.environment import is_seen_in_window, path_of, report_error, set_up_streams
 from app.cli.parser import COMMANDS, command_options, current_name, runner_of, window_options
 from core.errors import UserError
@@ -43,8 +40,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run_command(command: str, words: Sequence[str]) -> int:
+    options = command_options(command, words)
+    # Loaded for a command alone: the version and the help are there before them.
+    import scipy.linalg  # noqa: F401, PLC0415  its BLAS must be there to be held to one thread
+    from threadpoolctl import threadpool_limits  # noqa: PLC0415
+
     with threadpool_limits(1):  # two threads of BLAS wait for each other, and spin, over small products
-        return runner_of(command)(command_options(command, words))
+        return runner_of(command)(options)
 
 
 def _run_window(words: Sequence[str]) -> int:
