@@ -25,7 +25,7 @@ from app.batch.body_worker import Limits, lost_row
 from app.batch.one_body import Row
 from app.batch.worker_plugin import BodyProcesses, compute_bodies
 from core import __version__
-from core.errors import UserError
+from core.errors import UserError, reason_of
 from core.messages import Message
 
 TASKS_A_PROCESS = 2
@@ -142,13 +142,19 @@ def _other_version(version: str) -> UserError:
 
 
 def _register(client: Client, plugin: BodyProcesses) -> None:
-    try:
-        client.register_plugin(plugin)
-    except Exception as problem:  # whatever importing Busk raises on another machine
-        raise UserError(
-            Message("The workers cannot run Busk {own}: {why}.", own=__version__, why=str(problem)),
-            Message("Install the same version on every worker."),
-        ) from problem
+    """Give the plugin to all workers, again if one is lost meanwhile. Raises UserError."""
+    for tried in range(1, TRIES + 1):
+        try:
+            client.register_plugin(plugin)
+            return
+        except Exception as problem:  # whatever importing Busk raises on another machine
+            if tried < TRIES and isinstance(problem, OSError):
+                time.sleep(0.5 * tried)
+                continue
+            raise UserError(
+                Message("The workers cannot run Busk {own}: {why}.", own=__version__, why=str(problem)),
+                Message("Install the same version on every worker."),
+            ) from problem
 
 
 @contextmanager
@@ -169,6 +175,20 @@ def _client(run: Run) -> Iterator[Client]:
             yield client
 
 
+def _started(options: Mapping[str, Any]) -> LocalCluster:
+    """Start a cluster, again if a worker is lost before it is there. Raises UserError."""
+    for tried in range(1, TRIES + 1):
+        try:
+            return LocalCluster(**options)
+        except RuntimeError as problem:
+            if tried == TRIES:
+                raise UserError(
+                    Message("The workers could not be started: {why}.", why=reason_of(problem)),
+                    Message("Check memory and disk, or use fewer processes (--workers)."),
+                ) from problem
+    raise AssertionError
+
+
 def local_cluster(run: Run) -> LocalCluster:
     """Start workers on this machine alone; they leave Ctrl+C to the command, which ends them."""
     options = {
@@ -182,11 +202,11 @@ def local_cluster(run: Run) -> LocalCluster:
         "security": True,  # no other user of this machine can make the workers run code
     }
     if not hasattr(signal, "pthread_sigmask"):  # Windows
-        return LocalCluster(**options)
+        return _started(options)
     resource_tracker.ensure_running()  # started later it would take the mask off
     # The thread that starts workers, also in the place of lost ones, and they themselves inherit the mask.
     signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
-        return LocalCluster(**options)
+        return _started(options)
     finally:
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})

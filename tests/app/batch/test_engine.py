@@ -84,3 +84,31 @@ def test_a_worker_of_another_version_computes_nothing() -> None:
 
     with pytest.raises(RuntimeError, match=r"0\.0\.1 here"):
         plugin.setup(Worker())
+
+
+def test_a_worker_that_is_lost_at_the_start_is_started_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    tried: list[int] = []
+
+    def start(**options: object) -> str:
+        tried.append(1)
+        if len(tried) < 3:
+            raise RuntimeError("Nanny failed to start.")
+        return "cluster"
+
+    monkeypatch.setattr("app.batch.engine.LocalCluster", start)
+    assert local_cluster(Run([], 1)) == "cluster"
+    monkeypatch.setattr("app.batch.engine.LocalCluster", lambda **_: (_ for _ in ()).throw(RuntimeError("no")))
+    with pytest.raises(UserError, match="workers could not be started: no"):
+        local_cluster(Run([], 1))
+
+
+def test_a_plugin_is_registered_again_if_a_worker_is_lost_meanwhile() -> None:
+    tried: list[object] = []
+
+    def register(plugin: object) -> None:
+        tried.append(plugin)
+        if len(tried) == 1:
+            raise OSError("Stream is closed")
+
+    _register(SimpleNamespace(register_plugin=register), "plugin")
+    assert tried == ["plugin", "plugin"]
