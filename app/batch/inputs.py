@@ -39,8 +39,12 @@ def list_scans(names: Sequence[str], excluded: Path | None = None) -> list[str]:
 
 
 def printable_path(path: str) -> str:
-    """Return a path as text that every table can hold: bytes that are not letters are escaped."""
-    return os.fsencode(path).decode("utf-8", errors="backslashreplace")
+    """Return a path, or a text with one, that every table can hold: what is not a letter is escaped."""
+    try:
+        data = os.fsencode(path)
+    except UnicodeEncodeError:  # half a letter, which no path has
+        data = path.encode("utf-8", errors="backslashreplace")
+    return data.decode("utf-8", errors="backslashreplace")
 
 
 def file_digest(path: Path) -> str:

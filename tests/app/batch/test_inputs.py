@@ -71,3 +71,4 @@ def test_digests_of_files_and_of_what_is_none(tmp_path: Path) -> None:
 @pytest.mark.skipif(os.name == "nt", reason="names are texts there")
 def test_names_that_are_no_text_are_escaped() -> None:
     assert printable_path(os.fsdecode(b"\xff\xe5\x90\x8d.ply")) == "\\xff名.ply"
+    assert printable_path("half \ud800 letter") == "half \\ud800 letter"

@@ -123,6 +123,14 @@ def test_a_file_that_is_no_body_is_refused(tmp_path: Path, worker: BodyWorker) -
         assert row["message"].endswith(".")
 
 
+@pytest.mark.skipif(os.name == "nt", reason="names are texts there")
+def test_a_name_that_is_no_text_is_escaped_in_the_sentence(tmp_path: Path, worker: BodyWorker) -> None:
+    (tmp_path / os.fsdecode(b"\xff.ply")).write_bytes(b"nothing")
+    row = worker.compute({**request(tmp_path / os.fsdecode(b"\xff.ply")), "scan": "\\xff.ply"})
+    assert row["state"] == "refused"
+    assert all(value.encode() for value in row.values() if isinstance(value, str)), "Parquet holds no other text"
+
+
 def test_too_little_time_or_memory_is_a_row_and_the_next_body_is_computed(person: Path) -> None:
     for limits, state, word in (
         (Limits(0.01), "timeout", "0.01 s"),
