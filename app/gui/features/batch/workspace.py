@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QObject, Qt, Signal
 
 from app.batch.batch_design import BatchDesign
+from app.batch.design_file import other_results_error
 from app.batch.extra import missing_error, missing_packages
 from app.batch.inputs import list_scans
 from app.batch.one_body import design_on_body
@@ -200,10 +201,10 @@ class BatchWorkspace(QObject):
             return
         dialog.notices.clear()
         if self.results.is_of_other(setup.out, designs):
-            folder = Message("{folder} holds the results of another design.", folder=str(setup.out))
+            problem = other_results_error(setup.out).message
             actions = ((tr("Use new folder"), self.use_new_folder),)
             dialog.notices.show_notice(
-                "bad", folder, Message("Choose another folder."), actions, lasting=True
+                "bad", problem, Message("Choose another folder."), actions, lasting=True
             )
             return
         self.results.begin(setup.out, designs)
