@@ -128,7 +128,9 @@ def test_a_name_that_is_no_text_is_escaped_in_the_sentence(tmp_path: Path, worke
     (tmp_path / os.fsdecode(b"\xff.ply")).write_bytes(b"nothing")
     row = worker.compute({**request(tmp_path / os.fsdecode(b"\xff.ply")), "scan": "\\xff.ply"})
     assert row["state"] == "refused"
-    assert all(value.encode() for value in row.values() if isinstance(value, str)), "Parquet holds no other text"
+    assert all(value.encode() for value in row.values() if isinstance(value, str)), (
+        "Parquet holds no other text"
+    )
 
 
 def test_too_little_time_or_memory_is_a_row_and_the_next_body_is_computed(person: Path) -> None:
