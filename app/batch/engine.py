@@ -18,6 +18,8 @@ from typing import Any
 
 import dask
 from distributed import Client, Future, KilledWorker, LocalCluster, as_completed
+from distributed.client import ClosedClientError
+from distributed.comm import CommClosedError
 
 from app.batch.batch_design import BatchDesign
 from app.batch.body_files import unpacked_files
@@ -45,6 +47,9 @@ TRIES = 5
 
 Work = Callable[[Sequence[Mapping[str, Any]]], list[Row] | str]
 """What a task does: rows of bodies, or the version of Busk on the worker if it is another one."""
+
+_LOGGERS = ("distributed", "distributed.client", "tornado", "tornado.application")
+"""Those to which Dask gives a handler of their own."""
 
 _ALL_LOST = "All workers that computed this body were lost. Check the cluster, then use --retry."
 
@@ -74,7 +79,7 @@ def run_batch(run: Run, bodies: Iterable[Mapping[str, Any]]) -> Iterator[list[Ro
     """Yield rows in the order in which tasks end; ``bodies`` are requests of ``body_process``.
 
     Bodies are taken from the iterable as tasks end. Lost workers' bodies are computed again. Raises UserError
-    if there is no scheduler, or its workers have another version of Busk.
+    if there is no scheduler, if it is lost, or if its workers have another version of Busk.
     """
     bodies = iter(bodies)
     first = next(bodies, None)
@@ -87,6 +92,8 @@ def run_batch(run: Run, bodies: Iterable[Mapping[str, Any]]) -> Iterator[list[Ro
             work = partial(compute_bodies, name, __version__)
             for rows in results(client, work, chain([first], bodies)):
                 yield [unpacked_files(row, run.out) for row in rows]
+        except (CommClosedError, ClosedClientError) as problem:
+            raise _lost_scheduler() from problem
         finally:
             with suppress(Exception):  # of a scheduler that is gone
                 client.unregister_worker_plugin(name)
@@ -95,7 +102,7 @@ def run_batch(run: Run, bodies: Iterable[Mapping[str, Any]]) -> Iterator[list[Ro
 def results(client: Client, work: Work, bodies: Iterator[Mapping[str, Any]]) -> Iterator[list[Row]]:
     """Yield the rows that ``work`` computes of ``bodies``, in the order in which tasks end.
 
-    Raises UserError if a worker has another version of Busk.
+    Raises UserError if a worker has another version of Busk, or the scheduler is lost.
     """
     tries: dict[Future, tuple[list[Mapping[str, Any]], int]] = {}
     # Results come while others are read: one after the other, 1,000 processes wait for the way of each.
@@ -120,6 +127,8 @@ def results(client: Client, work: Work, bodies: Iterator[Mapping[str, Any]]) -> 
     while tries:
         future, rows = next(running)
         task, tried = tries.pop(future)
+        if future.status in ("lost", "cancelled"):
+            raise _lost_scheduler()
         if future.status != "finished":
             if not isinstance(error := future.exception(), KilledWorker):
                 raise error
@@ -132,6 +141,13 @@ def results(client: Client, work: Work, bodies: Iterator[Mapping[str, Any]]) -> 
         future.release()
         refill()
         yield rows
+
+
+def _lost_scheduler() -> UserError:
+    return UserError(
+        Message("The connection to the scheduler was lost."),
+        Message("Check the cluster, then repeat the command: it continues the run."),
+    )
 
 
 def _other_version(version: str) -> UserError:
@@ -153,6 +169,7 @@ def _register(client: Client, plugin: BodyProcesses) -> None:
 
 @contextmanager
 def _client(run: Run) -> Iterator[Client]:
+    _silence_dask()
     with dask.config.set({"distributed.scheduler.allowed-failures": 20}):
         if run.scheduler:
             try:
@@ -167,6 +184,13 @@ def _client(run: Run) -> Iterator[Client]:
             return
         with local_cluster(run) as cluster, Client(cluster, set_as_default=False) as client:
             yield client
+
+
+def _silence_dask() -> None:
+    """Keep the logs of Dask from the standard error: what concerns the user is a sentence."""
+    for name in _LOGGERS:
+        for handler in logging.getLogger(name).handlers:
+            handler.setLevel(logging.CRITICAL + 1)
 
 
 def local_cluster(run: Run) -> LocalCluster:
