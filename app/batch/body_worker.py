@@ -115,8 +115,9 @@ class BodyWorker:
                 stream.close()
 
     def _start(self) -> None:
-        if self._process is not None:
+        if self._process is not None and self._process.poll() is None:
             return
+        self.close()  # one that ended while it had nothing to do
         # Without -P a file in the working folder could take the place of a library.
         self._process = subprocess.Popen(
             [sys.executable, "-P", "-m", _PROCESS],

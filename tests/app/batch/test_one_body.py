@@ -163,3 +163,12 @@ def test_a_process_that_is_killed_is_a_row_and_the_next_body_is_computed(
     assert (lost["state"], lost["scan"]) == ("crashed", person.name)
     again = worker.compute(request(person))
     assert again["volume_error_percent"] == row["volume_error_percent"]
+
+
+def test_a_process_that_ends_between_two_bodies_costs_none(tmp_path: Path, worker: BodyWorker) -> None:
+    (tmp_path / "a.ply").write_bytes(b"nothing")
+    assert worker.compute(request(tmp_path / "a.ply"))["state"] == "refused"
+    assert worker._process is not None
+    worker._process.kill()
+    worker._process.wait(20)
+    assert worker.compute(request(tmp_path / "a.ply"))["state"] == "refused"
