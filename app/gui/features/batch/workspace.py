@@ -14,7 +14,7 @@ from app.batch.extra import missing_error, missing_packages
 from app.batch.inputs import list_scans
 from app.batch.one_body import design_on_body
 from app.batch.schema import PAGE
-from app.batch.stored_rows import has_results, scan_file
+from app.batch.stored_rows import has_results, scan_file, written_file
 from app.gui.features.batch.designs import STORED, DesignChoice
 from app.gui.features.batch.dialog import BatchDialog
 from app.gui.features.batch.results import BatchResults
@@ -319,9 +319,9 @@ class BatchWorkspace(QObject):
     def _open_report(self) -> None:
         row = self.dialog.table.current
         if row is not None and self._out is not None and row.report:
-            report = self._out / row.report
-            if not (report.is_file() and open_outside(report)):
-                self._inform(tr("The report could not be opened."), str(report))
+            report = written_file(self._out, "report", row.report)
+            if report is None or not (report.is_file() and open_outside(report)):
+                self._inform(tr("The report could not be opened."), row.report)
 
     def _show_folder(self) -> None:
         if self._out is not None:
