@@ -28,7 +28,7 @@ from app.batch.one_body import Row
 from app.batch.worker_plugin import BodyProcesses, compute_bodies
 from core import __version__
 from core.errors import UserError
-from core.messages import Message
+from core.messages import Message, join
 
 TASKS_A_PROCESS = 2
 """Tasks in flight for each process, which is a thread of a worker: one that runs and one that waits."""
@@ -51,7 +51,10 @@ Work = Callable[[Sequence[Mapping[str, Any]]], list[Row] | str]
 _LOGGERS = ("distributed", "distributed.client", "tornado", "tornado.application")
 """Those to which Dask gives a handler of their own."""
 
-_ALL_LOST = "All workers that computed this body were lost. Check the cluster, then use --retry."
+_ALL_LOST = (
+    Message("All workers that computed this body were lost."),
+    Message("Check the cluster, then use --retry."),
+)
 
 
 @dataclass(frozen=True)
@@ -135,7 +138,7 @@ def results(client: Client, work: Work, bodies: Iterator[Mapping[str, Any]]) -> 
             if tried + 1 < TRIES:
                 submit(task, tried + 1)
                 continue
-            rows = [lost_row(body, _ALL_LOST) for body in task]
+            rows = [lost_row(body, str(join(_ALL_LOST))) for body in task]
         if isinstance(rows, str):
             raise _other_version(rows)
         future.release()
