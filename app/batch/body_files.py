@@ -12,14 +12,12 @@ import numpy as np
 from PIL import Image
 
 from app.batch.one_body import Row
+from app.batch.schema import FOLDERS
 from app.rendering.thumbnail import render_thumbnail
 from core.errors import UserError
 from core.export.mesh import write_mesh
 from core.files.atomic_write import atomic_path
 from core.pipeline.solve import Solution
-
-FOLDERS = {"body": ("bodies", ".ply"), "picture": ("pictures", ".png"), "report": ("reports", ".pdf")}
-"""Folder and ending of each kind of file; the column ``KIND_file`` of a row has the name."""
 
 PICTURE_SIZE = (96, 128)
 """Width and height of a picture [px]."""

@@ -26,6 +26,7 @@ from app.batch.inputs import file_digest
 from app.batch.one_body import Row, compute_row, plain_row
 from app.batch.schema import CRASHED
 from core import __version__
+from core.messages import Message, join
 from core.pipeline.build import Stages
 
 
@@ -50,7 +51,8 @@ class BodyComputer:
             row = self._row(design, path, request)
         except Exception as problem:  # of one body: the run goes on
             why = f"{type(problem).__name__}: {problem}".rstrip(": ")
-            row = {"state": CRASHED, "message": f"The computation failed ({why}). Check the scan."}
+            sentence = join((Message("The computation failed ({why}).", why=why), Message("Check the scan.")))
+            row = {"state": CRASHED, "message": str(sentence)}
         row |= {"scan": request["scan"], "scan_sha256": digest, "variant": design.name}
         memory = psutil.Process().memory_info().rss / 1e6
         return plain_row(

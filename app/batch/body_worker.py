@@ -21,6 +21,7 @@ from app.batch.inputs import file_digest
 from app.batch.one_body import Row
 from app.batch.schema import CRASHED, TIMEOUT
 from core import __version__
+from core.messages import Message, join
 
 START_SECONDS = 120.0
 """Time for a process to start [s]: on a cluster, libraries may come from a slow disk."""
@@ -53,8 +54,8 @@ def _environment() -> dict[str, str]:
 class _LostError(Exception):
     """The process has ended or was ended; ``state`` is that of the row."""
 
-    def __init__(self, state: str, sentence: str) -> None:
-        super().__init__(sentence)
+    def __init__(self, state: str, *sentences: Message) -> None:
+        super().__init__(str(join(sentences)))
         self.state = state
 
 
@@ -115,8 +116,9 @@ class BodyWorker:
                 stream.close()
 
     def _start(self) -> None:
-        if self._process is not None:
+        if self._process is not None and self._process.poll() is None:
             return
+        self.close()  # one that ended while it had nothing to do
         # Without -P a file in the working folder could take the place of a library.
         self._process = subprocess.Popen(
             [sys.executable, "-P", "-m", _PROCESS],
@@ -132,7 +134,14 @@ class BodyWorker:
         assert self._process.stdout is not None
         threading.Thread(target=_read, args=(self._process.stdout, self._answers), daemon=True).start()
         self._send(self._setup)
-        self._answer(START_SECONDS)
+        try:
+            self._answer(START_SECONDS)
+        except _LostError as lost:
+            raise _LostError(
+                CRASHED,
+                Message("The process that computes bodies could not be started."),
+                Message("Check Busk and the memory of this machine, then use --retry."),
+            ) from lost
 
     def _send(self, line: str) -> None:
         assert self._process is not None
@@ -155,7 +164,8 @@ class BodyWorker:
                 return line
             raise _LostError(
                 CRASHED,
-                "The process that computed this body ended unexpectedly. Check scan and memory.",
+                Message("The process that computed this body ended unexpectedly."),
+                Message("Check scan and memory."),
             )
 
     def _check(self, end: float, seconds: float) -> None:
@@ -163,14 +173,18 @@ class BodyWorker:
         if time.monotonic() >= end:
             raise _LostError(
                 TIMEOUT,
-                f"No result within {seconds:g} s. Reduce the scan, or allow more time.",
+                Message("No result within {seconds} s.", seconds=f"{seconds:g}"),
+                Message("Reduce the scan, or allow more time."),
             )
         with suppress(psutil.Error):  # ended: the missing answer is seen next
             if psutil.Process(self._process.pid).memory_info().rss > 1e6 * self._limits.memory_mb:
                 raise _LostError(
                     CRASHED,
-                    f"The body needs more than {self._limits.memory_mb:g} MB of memory. "
-                    "Reduce the scan, or allow more memory.",
+                    Message(
+                        "The body needs more than {memory} MB of memory.",
+                        memory=f"{self._limits.memory_mb:g}",
+                    ),
+                    Message("Reduce the scan, or allow more memory."),
                 )
 
 

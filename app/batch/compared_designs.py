@@ -112,7 +112,10 @@ def compared_designs(first: Results, second: Results) -> DesignComparison:
 def _names(first: Results, second: Results) -> tuple[str, str]:
     if first.variant != second.variant:
         return first.variant, second.variant
-    return f"{first.variant} ({first.folder.name})", f"{second.variant} ({second.folder.name})"
+    folders = [each.folder.name for each in (first, second)]
+    if folders[0] == folders[1]:
+        folders = [str(each.folder) for each in (first, second)]
+    return f"{first.variant} ({folders[0]})", f"{second.variant} ({folders[1]})"
 
 
 def _matched(first: Results, second: Results) -> tuple[Indices, Unmatched]:

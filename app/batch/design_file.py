@@ -55,11 +55,31 @@ def stored_key(folder: Path) -> str | None:
     return None
 
 
-def other_design_error(folder: Path) -> UserError:
-    """Return the error of a folder that holds the results of another design."""
+def other_results_error(folder: Path) -> UserError:
+    """Return the error of a folder that holds the results of another design, or of another version."""
+    with suppress(OSError, ValueError, KeyError):
+        values = _values(folder / DESIGN)
+        if (values["busk_version"], values["schema_version"]) != (__version__, SCHEMA_VERSION):
+            return other_version_error(folder)
     return UserError(
         Message("{folder} holds the results of another design.", folder=str(folder)),
         Message("Choose another folder, or remove these results with --restart."),
+    )
+
+
+def other_version_error(folder: Path) -> UserError:
+    """Return the error of a folder that holds the results of another version of Busk."""
+    return UserError(
+        Message("{folder} holds results of another version of Busk.", folder=str(folder)),
+        Message("Compute them again with busk batch --restart."),
+    )
+
+
+def damaged_error(folder: Path, problem: str | Message) -> UserError:
+    """Return the error of a folder whose results cannot be read."""
+    return UserError(
+        Message("The results in {folder} are damaged: {problem}.", folder=str(folder), problem=problem),
+        Message("Compute them again with busk batch --restart."),
     )
 
 

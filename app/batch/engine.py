@@ -18,6 +18,8 @@ from typing import Any
 
 import dask
 from distributed import Client, Future, KilledWorker, LocalCluster, as_completed
+from distributed.client import ClosedClientError
+from distributed.comm import CommClosedError
 
 from app.batch.batch_design import BatchDesign
 from app.batch.body_files import unpacked_files
@@ -26,7 +28,7 @@ from app.batch.one_body import Row
 from app.batch.worker_plugin import BodyProcesses, compute_bodies
 from core import __version__
 from core.errors import UserError, reason_of
-from core.messages import Message
+from core.messages import Message, join
 
 TASKS_A_PROCESS = 2
 """Tasks in flight for each process, which is a thread of a worker: one that runs and one that waits."""
@@ -46,7 +48,13 @@ TRIES = 5
 Work = Callable[[Sequence[Mapping[str, Any]]], list[Row] | str]
 """What a task does: rows of bodies, or the version of Busk on the worker if it is another one."""
 
-_ALL_LOST = "All workers that computed this body were lost. Check the cluster, then use --retry."
+_LOGGERS = ("distributed", "distributed.client", "tornado", "tornado.application")
+"""Those to which Dask gives a handler of their own."""
+
+_ALL_LOST = (
+    Message("All workers that computed this body were lost."),
+    Message("Check the cluster, then use --retry."),
+)
 
 
 @dataclass(frozen=True)
@@ -74,7 +82,7 @@ def run_batch(run: Run, bodies: Iterable[Mapping[str, Any]]) -> Iterator[list[Ro
     """Yield rows in the order in which tasks end; ``bodies`` are requests of ``body_process``.
 
     Bodies are taken from the iterable as tasks end. Lost workers' bodies are computed again. Raises UserError
-    if there is no scheduler, or its workers have another version of Busk.
+    if there is no scheduler, if it is lost, or if its workers have another version of Busk.
     """
     bodies = iter(bodies)
     first = next(bodies, None)
@@ -87,6 +95,8 @@ def run_batch(run: Run, bodies: Iterable[Mapping[str, Any]]) -> Iterator[list[Ro
             work = partial(compute_bodies, name, __version__)
             for rows in results(client, work, chain([first], bodies)):
                 yield [unpacked_files(row, run.out) for row in rows]
+        except (CommClosedError, ClosedClientError) as problem:
+            raise _lost_scheduler() from problem
         finally:
             with suppress(Exception):  # of a scheduler that is gone
                 client.unregister_worker_plugin(name)
@@ -95,7 +105,7 @@ def run_batch(run: Run, bodies: Iterable[Mapping[str, Any]]) -> Iterator[list[Ro
 def results(client: Client, work: Work, bodies: Iterator[Mapping[str, Any]]) -> Iterator[list[Row]]:
     """Yield the rows that ``work`` computes of ``bodies``, in the order in which tasks end.
 
-    Raises UserError if a worker has another version of Busk.
+    Raises UserError if a worker has another version of Busk, or the scheduler is lost.
     """
     tries: dict[Future, tuple[list[Mapping[str, Any]], int]] = {}
     # Results come while others are read: one after the other, 1,000 processes wait for the way of each.
@@ -120,18 +130,27 @@ def results(client: Client, work: Work, bodies: Iterator[Mapping[str, Any]]) -> 
     while tries:
         future, rows = next(running)
         task, tried = tries.pop(future)
+        if future.status in ("lost", "cancelled"):
+            raise _lost_scheduler()
         if future.status != "finished":
             if not isinstance(error := future.exception(), KilledWorker):
                 raise error
             if tried + 1 < TRIES:
                 submit(task, tried + 1)
                 continue
-            rows = [lost_row(body, _ALL_LOST) for body in task]
+            rows = [lost_row(body, str(join(_ALL_LOST))) for body in task]
         if isinstance(rows, str):
             raise _other_version(rows)
         future.release()
         refill()
         yield rows
+
+
+def _lost_scheduler() -> UserError:
+    return UserError(
+        Message("The connection to the scheduler was lost."),
+        Message("Check the cluster, then repeat the command: it continues the run."),
+    )
 
 
 def _other_version(version: str) -> UserError:
@@ -159,6 +178,7 @@ def _register(client: Client, plugin: BodyProcesses) -> None:
 
 @contextmanager
 def _client(run: Run) -> Iterator[Client]:
+    _silence_dask()
     with dask.config.set({"distributed.scheduler.allowed-failures": 20}):
         if run.scheduler:
             try:
@@ -187,6 +207,13 @@ def _started(options: Mapping[str, Any]) -> LocalCluster:
                     Message("Check memory and disk, or use fewer processes (--workers)."),
                 ) from problem
     raise AssertionError
+
+
+def _silence_dask() -> None:
+    """Keep the logs of Dask from the standard error: what concerns the user is a sentence."""
+    for name in _LOGGERS:
+        for handler in logging.getLogger(name).handlers:
+            handler.setLevel(logging.CRITICAL + 1)
 
 
 def local_cluster(run: Run) -> LocalCluster:

@@ -92,10 +92,7 @@ def measures_of(results: Results, patterns: Sequence[str], without: Sequence[str
         if wanted and np.isfinite(results.numbers(name)[results.done]).any():
             found.append(Measure(name, unit))
     if not found:
-        raise UserError(
-            Message("{variant} has no values of measures to grade.", variant=results.variant),
-            Message("Use a design with elastics or a pattern, or choose columns with --measure."),
-        )
+        raise no_measures_error(results.variant)
     return tuple(found)
 
 
@@ -104,7 +101,7 @@ def graded_bodies(
 ) -> GradedBodies:
     """Return the bodies that are done and have a size; with ``verdicts`` only those with one of them.
 
-    Raises UserError if there is none.
+    Measures that none of these bodies has are left out. Raises UserError if there is no body, or no measure.
     """
     bands, cups = (results.texts(f"{part}_{grouping.table.key}") for part in (BAND, CUP))
     found = results.texts("verdict")
@@ -121,10 +118,22 @@ def graded_bodies(
             Message("Choose another one with --system, and check the scans in index.html."),
         )
     scans, places = results.texts("scan"), list(sized)
+    columns = {each: results.numbers(each.name)[places] for each in measures}
+    columns = {each: values for each, values in columns.items() if np.isfinite(values).any()}
+    if not columns:
+        raise no_measures_error(results.variant)
     bodies = SizedBodies(
         tuple(scans[at] for at in places),
         np.array(list(sized.values()), dtype=np.int64),
-        measures,
-        np.column_stack([results.numbers(each.name)[places] for each in measures]),
+        tuple(columns),
+        np.column_stack(list(columns.values())),
     )
     return GradedBodies(results.variant, grouping, bodies, left_out)
+
+
+def no_measures_error(variant: str) -> UserError:
+    """Return the error of a variant whose bodies have no values to grade."""
+    return UserError(
+        Message("{variant} has no values of measures to grade.", variant=variant),
+        Message("Use a design with elastics or a pattern, or choose columns with --measure."),
+    )

@@ -13,9 +13,8 @@ import numpy as np
 import pyarrow as pa
 
 from app.batch.batch_design import BatchDesign
-from app.batch.body_files import FOLDERS
 from app.batch.one_body import Row
-from app.batch.schema import DONE, columns_of
+from app.batch.schema import DONE, FOLDERS, columns_of
 from app.batch.svg_plots import histogram, number_axis
 
 MOST_ROWS = 20_000

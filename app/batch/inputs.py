@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 
+from app.batch.schema import DESIGN, FOLDERS, TABLE
 from core.document.storage.project_file import SUFFIX
 from core.errors import UserError, reason_of
 from core.files.regular_file import open_regular, read_text
@@ -22,15 +23,17 @@ _IN_FOLDERS = {*(f".{kind}" for kind in FORMATS), SUFFIX} - {".gz", ".txt", ".cs
 _LARGEST_LIST = 200_000_000  # bytes of a list of scans
 
 
-def list_scans(names: Sequence[str], excluded: Path | None = None) -> list[str]:
+def list_scans(names: Sequence[str], out: Path | None = None) -> list[str]:
     """Return the paths of all scans, each once, in the order of ``names`` and of their names in folders.
 
     A named file and a folder that cannot be read are listed as well: they are refused with a reason when they
-    are read. What is in the folder ``excluded``, the output of the run, is not listed. Raises UserError for a
-    list that cannot be read, and if there is no scan.
+    are read. Reshaped bodies in the output of a run are not listed, but where their folder is named; ``out``
+    is the output of this one. Raises UserError for a list that cannot be read, and if there is no scan.
     """
-    out = None if excluded is None else os.path.realpath(excluded)
-    found = list(dict.fromkeys(path for name in names for path in _scans(name, out)))
+    by_place: dict[str, str] = {}
+    for path in (path for name in names for path in _scans(name, out and Path(os.path.realpath(out)))):
+        by_place.setdefault(os.path.abspath(path), path)
+    found = list(by_place.values())
     if not found:
         raise UserError(
             Message("No scans found."), Message("Specify scans, folders with scans, or a list as CSV.")
@@ -39,8 +42,12 @@ def list_scans(names: Sequence[str], excluded: Path | None = None) -> list[str]:
 
 
 def printable_path(path: str) -> str:
-    """Return a path as text that every table can hold: bytes that are not letters are escaped."""
-    return os.fsencode(path).decode("utf-8", errors="backslashreplace")
+    """Return a path, or a text with one, that every table can hold: what is not a letter is escaped."""
+    try:
+        data = os.fsencode(path)
+    except UnicodeEncodeError:  # half a letter, which no path has
+        data = path.encode("utf-8", errors="backslashreplace")
+    return data.decode("utf-8", errors="backslashreplace")
 
 
 def file_digest(path: Path) -> str:
@@ -51,19 +58,22 @@ def file_digest(path: Path) -> str:
     return ""
 
 
-def _scans(name: str, out: str | None) -> Iterator[str]:
+def _scans(name: str, out: Path | None) -> Iterator[str]:
     if os.path.isdir(name):
         yield from _in_folder(name, out)
     elif name.lower().endswith(".csv"):
         yield from _listed(Path(name))
     elif glob.has_magic(name) and not os.path.lexists(name):
         for match in sorted(glob.glob(name, recursive=True)):
-            yield from _in_folder(match, out) if os.path.isdir(match) else [match]
+            if os.path.isdir(match):
+                yield from () if _is_written(match, out) else _in_folder(match, out)
+            elif not _is_written(os.path.dirname(match), out):
+                yield match
     else:
         yield name
 
 
-def _in_folder(top: str, out: str | None) -> Iterator[str]:
+def _in_folder(top: str, out: Path | None) -> Iterator[str]:
     """Yield the scans below a folder; a folder that links lead to again is read once."""
     unreadable: list[str] = []
     seen: set[str] = set()
@@ -75,13 +85,21 @@ def _in_folder(top: str, out: str | None) -> Iterator[str]:
         yield from unreadable
         unreadable.clear()
         place = os.path.realpath(folder)
-        if place in seen or place == out:
+        if place in seen or (folder != top and _is_written(folder, out)):
             folders.clear()
             continue
         seen.add(place)
         folders.sort()
         yield from (os.path.join(folder, file) for file in sorted(files) if _is_scan(file))
     yield from unreadable
+
+
+def _is_written(folder: str, out: Path | None) -> bool:
+    """Return whether a folder is that of the reshaped bodies of a run."""
+    place = Path(os.path.realpath(folder))
+    if place.name != FOLDERS["body"][0]:
+        return False
+    return place.parent == out or all((place.parent / name).exists() for name in (DESIGN, TABLE))
 
 
 def _is_scan(name: str) -> bool:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from app.batch.batch_design import BatchDesign, with_elastics
+from app.batch.inputs import printable_path
 from app.batch.schema import DONE, REFUSED, measure_column
 from app.presenters.pattern import piece_rows, seam_rows
 from core.analysis.inverse_design.line_selection import LineSelection
@@ -197,12 +198,15 @@ def _pattern(solution: Solution) -> tuple[Row, Message | None]:
 
 
 def plain_row(row: Mapping[str, Any]) -> Row:
-    """Return a row with numbers of Python alone, ready for JSON without loss; not finite ones are unknown."""
+    """Return a row with numbers of Python alone, ready for JSON without loss; not finite ones are unknown.
+
+    In texts, bytes of a path that are not letters are escaped.
+    """
     return {name: _plain(value) for name, value in row.items()}
 
 
 def _plain(value: Any) -> Any:
     if value is None or isinstance(value, str):
-        return value
+        return value and printable_path(value)
     number = float(value)
     return number if math.isfinite(number) else None

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from app.batch.batch_design import SCHEMA_VERSION
+from app.batch.design_file import damaged_error, other_version_error
 from app.batch.extra import missing_error
 from app.batch.schema import DESIGN, DONE, TABLE
 from core.errors import UserError, reason_of
@@ -74,7 +75,7 @@ def read_results(folder: Path) -> tuple[Results, ...]:
     names = np.array(rows["variant"])
     unknown = set(names) - set(variants)
     if unknown:
-        raise _damaged(folder, Message("design.json does not name all variants"))
+        raise damaged_error(folder, Message("design.json does not name all variants"))
     return tuple(_of_variant(folder, each, rows, units, np.flatnonzero(names == each)) for each in variants)
 
 
@@ -100,20 +101,10 @@ def _variants(folder: Path) -> list[str]:
             Message("Specify the output folder of busk batch."),
         ) from problem
     except (OSError, ValueError, KeyError, TypeError) as problem:
-        raise _damaged(folder, reason_of(problem)) from problem
+        raise damaged_error(folder, reason_of(problem)) from problem
     if version != SCHEMA_VERSION:
-        raise UserError(
-            Message("{folder} holds results of another version of Busk.", folder=str(folder)),
-            Message("Compute them again with busk batch --restart."),
-        )
+        raise other_version_error(folder)
     return variants
-
-
-def _damaged(folder: Path, problem: str | Message) -> UserError:
-    return UserError(
-        Message("The results in {folder} are damaged: {problem}.", folder=str(folder), problem=problem),
-        Message("Compute them again with busk batch --restart."),
-    )
 
 
 def _read_table(folder: Path) -> tuple[dict[str, Any], dict[str, str]]:
@@ -128,14 +119,14 @@ def _read_table(folder: Path) -> tuple[dict[str, Any], dict[str, str]]:
         tables = [pq.ParquetFile(part).read() for part in parts]
         table = pa.concat_tables(tables) if tables else None
     except (OSError, ValueError, pa.ArrowException) as problem:
-        raise _damaged(folder, " ".join(str(problem).split()).rstrip(".")) from problem
+        raise damaged_error(folder, " ".join(str(problem).split()).rstrip(".")) from problem
     if table is None or not table.num_rows:
         raise UserError(
             Message("{folder} holds no rows.", folder=str(folder)),
             Message("Run busk batch with scans first."),
         )
     if missing_columns := [name for name in _NEEDED if name not in table.column_names]:
-        raise _damaged(folder, Message("column {name} is missing", name=missing_columns[0]))
+        raise damaged_error(folder, Message("column {name} is missing", name=missing_columns[0]))
     units = {
         field.name: (field.metadata or {}).get(b"unit", b"").decode()
         for field in table.schema

@@ -15,6 +15,9 @@ TABLE, CSV, PAGE = "results.parquet", "results.csv", "index.html"
 SUMMARY, DESIGN = "summary.json", "design.json"
 """Files in the folder of a run."""
 
+FOLDERS = {"body": ("bodies", ".ply"), "picture": ("pictures", ".png"), "report": ("reports", ".pdf")}
+"""Folder and ending of each kind of file; the column ``KIND_file`` of a row has the name."""
+
 TEXT, NUMBER = "text", "number"
 DONE, REFUSED, CRASHED, TIMEOUT = STATES = ("done", "refused", "crashed", "timeout")
 """What became of a body: only one that is done has results."""

@@ -5,9 +5,11 @@ from __future__ import annotations
 import csv
 import io
 import json
+import os
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,7 +18,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from app.batch.batch_design import SCHEMA_VERSION, BatchDesign, content_key
-from app.batch.design_file import other_design_error, stored_key, write_designs
+from app.batch.design_file import damaged_error, other_results_error, stored_key, write_designs
 from app.batch.index_page import index_page
 from app.batch.one_body import Row
 from app.batch.schema import (
@@ -74,20 +76,25 @@ class ResultStore:
             raise
 
     def _prepare(self, restart: bool) -> None:
-        if restart:
-            self._clear()
-        elif _former_key(self.folder) not in (None, self.key):
-            raise other_design_error(self.folder)
-        self._table.mkdir(exist_ok=True)
+        former = _former_key(self.folder)
+        if former is None:
+            _check_no_others(self.folder)
+        elif restart:
+            with _writing(self.folder):
+                self._clear()
+        elif former != self.key:
+            raise other_results_error(self.folder)
         write_designs(self.folder / DESIGN, self.designs)
+        with _writing(self._table):
+            self._table.mkdir(exist_ok=True)
         self._waiting: list[Row] = []
         self._stored: dict[tuple[str, str], _Stored] = {}
         self._by_content: dict[tuple[str, str], list[str]] = {}
         for part in self._parts():
-            for row in pq.read_table(part, columns=list(_KEY_COLUMNS)).to_pylist():
+            for row in self._read(part, _KEY_COLUMNS).to_pylist():
                 self._note(row, part)
-        numbers = (int(part.stem.partition("-")[2]) for part in self._parts())
-        self._next = max(numbers, default=-1) + 1
+        numbers = (part.stem.partition("-")[2] for part in self._parts())
+        self._next = max((int(each) for each in numbers if each.isdecimal()), default=-1) + 1
         self._write_csv(None)
 
     @property
@@ -108,14 +115,14 @@ class ResultStore:
         With ``retry`` a row that crashed or ran out of time does not count.
         """
         stored = self._stored.get((scan, variant))
-        if stored is not None and stored.digest == digest:
-            return bool(digest) and not (retry and stored.state in (CRASHED, TIMEOUT))
-        moved = self._by_content.get((digest, variant), []) if digest else []
-        former = next((each for each in moved if not listed(each)), None)
-        if former is None:
-            return False
-        moved.remove(former)
-        return True
+        if stored is None or stored.digest != digest:
+            moved = self._by_content.get((digest, variant), []) if digest else []
+            former = next((each for each in moved if not listed(each)), None)
+            if former is None:
+                return False
+            moved.remove(former)
+            stored = self._stored[former, variant]
+        return bool(digest) and not (retry and stored.state in (CRASHED, TIMEOUT))
 
     def add(self, rows: Iterable[Row]) -> None:
         """Add rows; they are written when it is time."""
@@ -136,7 +143,7 @@ class ResultStore:
         self._write_part(part, rows)
         for row in rows:
             self._note(row, part)
-        with open(self._csv, "a", newline="", encoding="utf-8") as file:
+        with _writing(self._csv), open(self._csv, "a", newline="", encoding="utf-8") as file:
             file.write(self._csv_text(rows))
 
     def finish(self, order: Sequence[str], seconds: float, *, interrupted: bool) -> dict[str, Any]:
@@ -162,11 +169,17 @@ class ResultStore:
 
     def table(self) -> pa.Table:
         """Return all rows that are written, in the order in which they were computed."""
-        tables = [pq.read_table(part) for part in self._parts()]
+        tables = [self._read(part) for part in self._parts()]
         return pa.concat_tables(tables or [_arrow_schema(self.columns).empty_table()])
 
     def _parts(self) -> list[Path]:
         return sorted(self._table.glob("part-*.parquet"))
+
+    def _read(self, part: Path, columns: Sequence[str] | None = None) -> pa.Table:
+        try:
+            return pq.read_table(part, columns=columns and list(columns))
+        except (OSError, ValueError, pa.ArrowException) as problem:
+            raise damaged_error(self.folder, " ".join(str(problem).split()).rstrip(".")) from problem
 
     def _note(self, row: Row, part: Path | None) -> None:
         scan, digest, variant = row["scan"], row["scan_sha256"] or "", row["variant"]
@@ -177,12 +190,13 @@ class ResultStore:
         """Remove former rows of these scans and variants, whose files have changed or are tried again."""
         parts = {self._stored[key].part for key in keys if key in self._stored}
         for part in sorted(each for each in parts if each is not None):
-            rows = pq.read_table(part).to_pylist()
+            rows = self._read(part).to_pylist()
             kept = [row for row in rows if (row["scan"], row["variant"]) not in keys]
             if kept:
                 self._write_part(part, kept)
             else:
-                part.unlink()
+                with _writing(part):
+                    part.unlink()
 
     def _write_part(self, part: Path, rows: Sequence[Row]) -> None:
         arrow = pa.Table.from_pylist(
@@ -224,10 +238,13 @@ class ResultStore:
         return sorted(range(len(keys)), key=keys.__getitem__)
 
     def _clear(self) -> None:
-        """Remove the results of a former run, and nothing else that is in the folder."""
+        """Remove the results of a former run, and nothing else that is in the folder.
+
+        Its designs come last: while they are there, the folder is that of a run.
+        """
         for part in self._parts():
             part.unlink()
-        for name in (CSV, SUMMARY, DESIGN, PAGE):
+        for name in (CSV, SUMMARY, PAGE, DESIGN):
             (self.folder / name).unlink(missing_ok=True)
 
 
@@ -244,12 +261,41 @@ def _locked(folder: Path) -> FolderLock:
             Message("Choose another folder."),
         ) from problem
     try:
-        return FolderLock(folder)
-    except OSError as problem:
+        with _writing(folder):
+            return FolderLock(folder)
+    except BlockingIOError as problem:
         raise ProjectError(
             Message("Another run is writing to {folder}.", folder=str(folder)),
             Message("Wait until it has ended, or choose another folder."),
         ) from problem
+
+
+@contextmanager
+def _writing(place: Path) -> Iterator[None]:
+    """Raise a UserError for a place that cannot be written; the lock of another run is none."""
+    try:
+        yield
+    except BlockingIOError:
+        raise
+    except OSError as problem:
+        raise ProjectError(
+            Message("{file} cannot be written: {problem}.", file=str(place), problem=reason_of(problem)),
+            Message("Choose another folder or free up disk space."),
+        ) from problem
+
+
+def _check_no_others(folder: Path) -> None:
+    """Raise a UserError if a folder that is not that of a run holds files that a run would replace."""
+    others = [name for name in (CSV, SUMMARY, DESIGN, PAGE) if os.path.lexists(folder / name)]
+    if others:
+        raise ProjectError(
+            Message(
+                "{folder} holds other files named like results: {names}.",
+                folder=str(folder),
+                names=", ".join(others),
+            ),
+            Message("Choose another folder."),
+        )
 
 
 def _former_key(folder: Path) -> str | None:

@@ -11,8 +11,9 @@ from pathlib import Path
 from app.batch.batch_design import BatchDesign
 from app.batch.design_file import read_designs
 from app.batch.one_body import Row
-from app.batch.schema import CSV, DESIGN, TEXT, columns_of
+from app.batch.schema import CSV, DESIGN, FOLDERS, TEXT, columns_of
 from core.errors import ProjectError, reason_of
+from core.export.csv_cells import is_formula
 from core.messages import Message
 from core.progress import Progress, quiet
 
@@ -53,6 +54,16 @@ def scan_file(folder: Path, scan: str) -> Path | None:
     return None
 
 
+def written_file(folder: Path, kind: str, name: str) -> Path | None:
+    """Return the file of a row, of a ``kind`` of ``FOLDERS``; None if there is none, or none of a run.
+
+    Results may come from others: what is opened is in the folder of its kind, and has its ending.
+    """
+    inside, ending = FOLDERS[kind]
+    file = Path(name).name
+    return folder / inside / file if name == f"{inside}/{file}" and file.endswith(ending) else None
+
+
 def _rows(lines: Iterator[str], designs: Sequence[BatchDesign], progress: Progress) -> Iterator[Row]:
     texts = {column.name for column in columns_of(designs) if column.kind == TEXT}
     reader = csv.reader(lines)
@@ -69,7 +80,7 @@ def _rows(lines: Iterator[str], designs: Sequence[BatchDesign], progress: Progre
 
 def _text(cell: str) -> str:
     """Return a text without the apostrophe that keeps spreadsheets from computing it."""
-    return cell[1:] if cell[:1] == "'" and cell[1:2] in "=@+-\t" else cell
+    return cell[1:] if cell[:1] == "'" and is_formula(cell[1:]) else cell
 
 
 def _number(cell: str) -> float | None:

@@ -35,8 +35,13 @@ def cell(value: object) -> object:
     if isinstance(value, float):
         return f"{value:.6g}"
     if isinstance(value, str):
-        return f"'{printable(value)}" if _FORMULA.match(value) else printable(value)
+        return f"'{printable(value)}" if is_formula(value) else printable(value)
     return value
+
+
+def is_formula(text: str) -> bool:
+    """Return whether a spreadsheet would compute a text."""
+    return _FORMULA.match(text) is not None
 
 
 def write_table(path: Path, table: Table) -> None:

@@ -15,13 +15,15 @@ def main() -> None:
     """Write authority, certificate and key, and print the settings."""
     folder = Path(sys.argv[1]).absolute()
     folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+    folder.chmod(0o700)
     made = Security.temporary()
     for name, text in (
         ("ca.pem", made.tls_ca_file),
         ("cert.pem", made.tls_client_cert),
         ("key.pem", made.tls_client_key),
     ):
-        (folder / name).touch(mode=0o600)
+        (folder / name).unlink(missing_ok=True)
+        (folder / name).touch(mode=0o600, exist_ok=False)
         (folder / name).write_text(text, encoding="ascii")
     prefix = "DASK_DISTRIBUTED__COMM__"
     print(f"{prefix}REQUIRE_ENCRYPTION=True")

@@ -207,6 +207,28 @@ def test_rows_of_the_command_open_with_the_lengths_of_their_body(tmp_path: Path,
     assert run_bodiless([], script) == 0
 
 
+def test_stored_rows_are_shown_also_if_a_run_starts_before_they_are_read(
+    scans: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.gui.features.batch.run.BatchRun.start", lambda *_: None)
+    design = batch_design("bra", Design(ScanSource("")), ["mid-bust=95%"], [], [])
+    store = ResultStore(tmp_path / "results", [design])
+    store.add([{"scan": "a.ply", "scan_sha256": "d", "variant": "bra", "state": "done", "verdict": "good"}])
+    store.flush()
+    store.close()
+
+    def script(window: MainWindow) -> Script:
+        yield settled(window)
+        workspace, _ = opened(window)
+        workspace.choose_scans([str(scans)])
+        workspace.choice.keep([design])
+        workspace.choose_out(tmp_path / "results")
+        workspace.start()
+        yield has_rows(workspace, 1)
+
+    assert run_bodiless([], script) == 0
+
+
 def test_closing_the_program_ends_a_run(scans: Path) -> None:
     left = []
 

@@ -185,7 +185,7 @@ def _design(text: str) -> tuple[str, Design]:
     if not text:
         return "design", Design(ScanSource(""))
     if is_project(text):
-        return Path(text).stem, open_project(text).design
+        return printable_path(Path(text).stem), open_project(text).design
     return preset_design(find_preset(text))
 
 

@@ -55,8 +55,11 @@ def test_the_job_for_slurm_runs_encrypted_and_leaves_nothing(person: Path, tmp_p
 
 
 def test_certificates_are_their_owners_alone(tmp_path: Path) -> None:
+    (tmp_path / "tls").mkdir(mode=0o755)
+    (tmp_path / "tls" / "key.pem").write_text("former")
     settings_in(tmp_path / "tls")
     assert {stat.S_IMODE(file.stat().st_mode) for file in (tmp_path / "tls").iterdir()} == {0o600}
+    assert stat.S_IMODE((tmp_path / "tls").stat().st_mode) == 0o700
 
 
 def test_the_manifests_name_settings_and_options_that_there_are(tmp_path: Path) -> None:

@@ -90,3 +90,10 @@ def test_designs_without_pressure_are_compared_by_the_rest(tmp_path: Path) -> No
     assert found.tradeoff.count == 0
     assert "no body has both" in " ".join(sentences(found))
     assert "nan" not in compare_page(found).lower()
+
+
+def test_runs_in_folders_of_one_name_are_told_apart(tmp_path: Path) -> None:
+    spring, autumn = (run_of(tmp_path / season / "results", made_rows(3)) for season in ("spring", "autumn"))
+    first, second = compared_designs(spring, autumn).names
+    assert "spring" in first
+    assert "autumn" in second

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import logging
 import subprocess
 import sys
 from collections.abc import Iterator
+from io import StringIO
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from batch_tools import ROOT, lasting, parquet_rows, run_batch
@@ -13,11 +16,12 @@ from distributed import Client
 
 from app.batch.batch_design import batch_design
 from app.batch.body_worker import Limits
-from app.batch.engine import Run, local_cluster
+from app.batch.engine import Run, _register, _silence_dask, local_cluster, results
 from app.batch.one_body import compute_row, plain_row
 from app.batch.worker_plugin import BodyProcesses, compute_bodies
 from core import __version__
 from core.document.design import Design, ScanSource
+from core.errors import UserError
 
 CLUSTER = """
 import sys
@@ -89,16 +93,17 @@ def test_a_worker_of_another_version_computes_nothing() -> None:
 def test_a_worker_that_is_lost_at_the_start_is_started_again(monkeypatch: pytest.MonkeyPatch) -> None:
     tried: list[int] = []
 
-    def start(**options: object) -> str:
+    def start(lost: int) -> str:
         tried.append(1)
-        if len(tried) < 3:
+        if len(tried) <= lost:
             raise RuntimeError("Nanny failed to start.")
         return "cluster"
 
-    monkeypatch.setattr("app.batch.engine.LocalCluster", start)
+    monkeypatch.setattr("app.batch.engine.LocalCluster", lambda **_: start(2))
     assert local_cluster(Run([], 1)) == "cluster"
-    monkeypatch.setattr("app.batch.engine.LocalCluster", lambda **_: (_ for _ in ()).throw(RuntimeError("no")))
-    with pytest.raises(UserError, match="workers could not be started: no"):
+    tried.clear()
+    monkeypatch.setattr("app.batch.engine.LocalCluster", lambda **_: start(100))
+    with pytest.raises(UserError, match="workers could not be started: Nanny failed"):
         local_cluster(Run([], 1))
 
 
@@ -112,3 +117,33 @@ def test_a_plugin_is_registered_again_if_a_worker_is_lost_meanwhile() -> None:
 
     _register(SimpleNamespace(register_plugin=register), "plugin")
     assert tried == ["plugin", "plugin"]
+
+
+def test_a_scheduler_that_is_lost_is_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Lost:
+        status = "lost"
+
+    class Completed(list[Lost]):
+        def __init__(self, **options: object) -> None:
+            self.add = self.append
+
+        def __next__(self) -> tuple[Lost, None]:
+            return self.pop(), None
+
+    monkeypatch.setattr("app.batch.engine.as_completed", Completed)
+    client = SimpleNamespace(loop=None, nthreads=lambda: {"worker": 1}, submit=lambda *_, **__: Lost())
+    with pytest.raises(UserError, match="connection to the scheduler was lost"):
+        next(results(client, lambda _: [], iter([{"scan": "a"}])))
+
+
+def test_dask_prints_nothing_of_its_own() -> None:
+    client = logging.getLogger("distributed.client")
+    own = StringIO()
+    handler = logging.StreamHandler(own)
+    client.addHandler(handler)
+    try:
+        _silence_dask()
+        client.error("Failed to reconnect to scheduler")
+        assert own.getvalue() == ""
+    finally:
+        client.removeHandler(handler)

@@ -57,10 +57,30 @@ def test_a_list_that_cannot_be_read_is_refused(tmp_path: Path) -> None:
         list_scans([str(tmp_path / "list.csv")])
 
 
-def test_the_output_of_the_run_is_not_its_input(tmp_path: Path) -> None:
+def test_reshaped_bodies_of_runs_are_no_input_unless_their_folder_is_named(tmp_path: Path) -> None:
+    scan, out, former = touch(tmp_path / "a.ply"), tmp_path / "out", tmp_path / "former"
+    beside = touch(former / "b.ply")
+    for name in ("design.json", "results.parquet"):
+        touch(former / name)
+    body = touch(former / "bodies" / "b-1.ply")
+    touch(out / "bodies" / "a-1.ply")
+    assert list_scans([str(tmp_path)], out) == [scan, beside]
+    assert list_scans([str(tmp_path / "**" / "*.ply")], out) == [scan, beside]
+    everything = list_scans([str(tmp_path / "**")], out)
+    assert {each for each in everything if each.endswith(".ply")} == {scan, beside}
+    assert list_scans([str(former / "bodies")], out) == [body]
+
+
+def test_scans_may_be_in_the_output_folder(tmp_path: Path) -> None:
     scan = touch(tmp_path / "a.ply")
-    touch(tmp_path / "out" / "bodies" / "a-1.ply")
-    assert list_scans([str(tmp_path)], tmp_path / "out") == [scan]
+    touch(tmp_path / "bodies" / "a-1.ply")
+    assert list_scans([str(tmp_path)], tmp_path) == [scan]
+
+
+def test_a_scan_named_in_two_ways_is_listed_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    touch(tmp_path / "a.ply")
+    monkeypatch.chdir(tmp_path)
+    assert list_scans(["a.ply", "./a.ply", str(tmp_path / "a.ply"), "."]) == ["a.ply"]
 
 
 def test_digests_of_files_and_of_what_is_none(tmp_path: Path) -> None:
@@ -71,3 +91,4 @@ def test_digests_of_files_and_of_what_is_none(tmp_path: Path) -> None:
 @pytest.mark.skipif(os.name == "nt", reason="names are texts there")
 def test_names_that_are_no_text_are_escaped() -> None:
     assert printable_path(os.fsdecode(b"\xff\xe5\x90\x8d.ply")) == "\\xff名.ply"
+    assert printable_path("half \ud800 letter") == "half \\ud800 letter"

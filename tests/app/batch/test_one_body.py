@@ -19,6 +19,8 @@ from app.batch.engine import Run
 from app.batch.one_body import compute_row
 from app.batch.schema import columns_of
 from app.cli.main import main
+from app.i18n.catalog import using_language
+from app.presenters.english_text import shown_text
 from core.document.design import Design, ScanSource
 
 LINES, ELASTICS = ["under-bust=94%", "mid-bust=-20mm"], ["mid-bust=plush 12"]
@@ -123,6 +125,16 @@ def test_a_file_that_is_no_body_is_refused(tmp_path: Path, worker: BodyWorker) -
         assert row["message"].endswith(".")
 
 
+@pytest.mark.skipif(os.name == "nt", reason="names are texts there")
+def test_a_name_that_is_no_text_is_escaped_in_the_sentence(tmp_path: Path, worker: BodyWorker) -> None:
+    (tmp_path / os.fsdecode(b"\xff.ply")).write_bytes(b"nothing")
+    row = worker.compute({**request(tmp_path / os.fsdecode(b"\xff.ply")), "scan": "\\xff.ply"})
+    assert row["state"] == "refused"
+    assert all(value.encode() for value in row.values() if isinstance(value, str)), (
+        "Parquet holds no other text"
+    )
+
+
 def test_too_little_time_or_memory_is_a_row_and_the_next_body_is_computed(person: Path) -> None:
     for limits, state, word in (
         (Limits(0.01), "timeout", "0.01 s"),
@@ -153,3 +165,26 @@ def test_a_process_that_is_killed_is_a_row_and_the_next_body_is_computed(
     assert (lost["state"], lost["scan"]) == ("crashed", person.name)
     again = worker.compute(request(person))
     assert again["volume_error_percent"] == row["volume_error_percent"]
+
+
+def test_a_process_that_ends_between_two_bodies_costs_none(tmp_path: Path, worker: BodyWorker) -> None:
+    (tmp_path / "a.ply").write_bytes(b"nothing")
+    assert worker.compute(request(tmp_path / "a.ply"))["state"] == "refused"
+    assert worker._process is not None
+    worker._process.kill()
+    worker._process.wait(20)
+    assert worker.compute(request(tmp_path / "a.ply"))["state"] == "refused"
+
+
+def test_a_process_that_cannot_start_is_named_as_such(person: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("app.batch.body_worker._PROCESS", "app.no_such_module")
+    row = BodyWorker(setup_of(DESIGN), Limits()).compute(request(person))
+    assert (row["state"], row["scan_sha256"] != "") == ("crashed", True)
+    assert "could not be started" in row["message"]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals are those of POSIX")
+def test_rows_of_lost_bodies_are_shown_in_the_language_in_use(person: Path) -> None:
+    row = BodyWorker(setup_of(DESIGN), Limits(0.01)).compute(request(person))
+    with using_language("ja"):
+        assert shown_text(row["message"]).startswith("0.01 秒")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -75,6 +77,8 @@ def test_a_scan_that_was_moved_is_known_by_its_content_once(opened: Opened) -> N
     assert not store.is_done("copy", "1", "one", {"old/a"}.__contains__)
     assert store.is_done("new/a", "1", "one", unlisted)
     assert not store.is_done("new/b", "1", "one", unlisted), "there is one row, and these are two scans"
+    written(store, row("old/c", "3", "timeout"))
+    assert not store.is_done("new/c", "3", "one", unlisted, retry=True)
     store.close()
 
 
@@ -105,6 +109,71 @@ def test_results_of_another_design_are_refused_or_removed(opened: Opened, tmp_pa
     assert not parquet_rows(tmp_path / "out")
     assert own.read_text() == "mine"
     store.close()
+
+
+def test_results_of_another_version_are_named_as_such(opened: Opened, tmp_path: Path) -> None:
+    store = opened()
+    written(store, row("a"))
+    store.close()
+    file = tmp_path / "out" / "design.json"
+    values = json.loads(file.read_text("utf-8"))
+    file.write_text(json.dumps({**values, "busk_version": "0.1", "key": "other"}))
+    with pytest.raises(UserError, match="another version"):
+        opened()
+
+
+@pytest.mark.parametrize("restart", [False, True])
+def test_files_of_others_are_not_replaced(opened: Opened, tmp_path: Path, restart: bool) -> None:
+    out = tmp_path / "out"
+    out.mkdir()
+    files = {"index.html": "my page", "design.json": "{}", "results.csv": "a,b"}
+    for name, text in files.items():
+        (out / name).write_text(text)
+    with pytest.raises(UserError, match=r"other files named like results: results\.csv, design\.json, index"):
+        opened(restart=restart)
+    assert {name: (out / name).read_text() for name in files} == files
+
+
+def test_a_restart_that_was_killed_can_be_repeated(opened: Opened, tmp_path: Path) -> None:
+    store = opened()
+    written(store, row("a"))
+    store.finish(["a"], 1.0, interrupted=False)
+    store.close()
+    removed: list[str] = []
+
+    def unlink(path: Path, missing_ok: bool = False) -> None:
+        removed.append(path.name)
+        if len(removed) == killed:
+            raise KeyboardInterrupt
+        os.unlink(path)
+
+    killed = 5
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Path, "unlink", unlink)
+        with pytest.raises(KeyboardInterrupt):
+            opened(OTHER, restart=True)
+    opened(OTHER, restart=True).close()
+
+
+@pytest.mark.parametrize("name", ["lock", "results.parquet"])
+def test_a_place_that_cannot_be_written_has_a_sentence(opened: Opened, tmp_path: Path, name: str) -> None:
+    place = tmp_path / "out" / name
+    place.parent.mkdir()
+    place.mkdir() if name == "lock" else place.write_bytes(b"")
+    with pytest.raises(UserError, match="cannot be written"):
+        opened()
+
+
+@pytest.mark.parametrize("data", [b"nothing", b""])
+def test_a_damaged_part_has_a_sentence(opened: Opened, tmp_path: Path, data: bytes) -> None:
+    store = opened()
+    written(store, row("a"))
+    store.close()
+    (part,) = (tmp_path / "out" / "results.parquet").iterdir()
+    part.write_bytes(data)
+    with pytest.raises(UserError, match="damaged"):
+        opened()
+    opened(restart=True).close()
 
 
 def test_one_run_at_a_time_writes_to_a_folder(opened: Opened) -> None:

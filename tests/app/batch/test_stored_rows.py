@@ -11,7 +11,7 @@ from app.batch.batch_design import batch_design, content_key
 from app.batch.design_file import is_design_file, read_designs, stored_key, write_designs
 from app.batch.schema import DESIGN
 from app.batch.store import ResultStore
-from app.batch.stored_rows import has_results, read_results, scan_file
+from app.batch.stored_rows import has_results, read_results, scan_file, written_file
 from core.document.design import Design, ScanSource
 from core.errors import UserError
 
@@ -25,13 +25,14 @@ def test_rows_are_those_of_the_table(tmp_path: Path) -> None:
     store = ResultStore(tmp_path, DESIGNS)
     known = {"scan_sha256": "d", "variant": "bra", "state": "done", "bust_mm": 881.123456789012}
     store.add([{"scan": "a,'\n.ply", **known}, {"scan": "=b.ply", **known, "message": "-5 is “odd”."}])
+    store.add([{"scan": scan, **known} for scan in (" =c.ply", "＝d.ply")])
     store.flush()
     assert has_results(tmp_path)
     designs, rows = read_results(tmp_path)  # while the run goes on
     assert content_key(designs) == content_key(DESIGNS)
     table = parquet_rows(tmp_path)
     assert [row["bust_mm"] for row in rows] == [row["bust_mm"] for row in table]
-    assert rows[1]["scan"] == "=b.ply"
+    assert [row["scan"] for row in rows[1:]] == ["=b.ply", " =c.ply", "＝d.ply"]
     assert rows[1]["lift_left_mm"] is None
     store.close()
 
@@ -73,3 +74,12 @@ def test_a_relative_scan_is_searched_above_the_results(tmp_path: Path) -> None:
     assert scan_file(folder, "scans/a.ply") == scan
     assert scan_file(folder, str(scan)) == scan
     assert scan_file(folder, "scans/b.ply") is None
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["", "/etc/a.pdf", "../a.pdf", "reports/../../a.pdf", "reports/a.desktop", "bodies/a.pdf", "a.pdf"],
+)
+def test_no_file_of_another_place_is_opened(tmp_path: Path, name: str) -> None:
+    assert written_file(tmp_path, "report", "reports/a-1.pdf") == tmp_path / "reports" / "a-1.pdf"
+    assert written_file(tmp_path, "report", name) is None

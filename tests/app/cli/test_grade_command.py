@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from batch_tools import run_batch
-from graded_runs import made_rows, write_run
+from graded_runs import STRAP, made_rows, write_run
 
 from app.cli.main import BAD_INPUT, main
 from app.cli.output import DONE
@@ -108,3 +108,17 @@ def test_wrong_words_are_refused(
     assert main(words) == BAD_INPUT
     assert problem in capsys.readouterr().err
     assert not (tmp_path / "run" / "grade").exists()
+
+
+def test_a_measure_that_none_of_the_chosen_bodies_has_is_left_out(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows = made_rows(6)
+    for number, row in enumerate(rows):
+        row["verdict"] = "good" if number else "bad"
+        row.update({STRAP: None} if number else {})
+    run = write_run(tmp_path / "run", rows)
+    assert main(["grade", str(run), "--verdict", "good"]) == DONE
+    assert STRAP not in capsys.readouterr().out
+    assert main(["grade", str(run), "--verdict", "good", "--measure", STRAP, "--fit", STRAP]) == BAD_INPUT
+    assert "no values of measures to grade" in capsys.readouterr().err

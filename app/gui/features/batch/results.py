@@ -64,10 +64,12 @@ class BatchResults(QObject):
             self._job = self._context.jobs.run(text, lambda told: _read(folder, told), self._take, self._fail)
 
     def begin(self, folder: Path, designs: Sequence[BatchDesign]) -> None:
-        """Prepare for the rows of a run; rows of these designs that are shown stay."""
-        if folder != self._folder or content_key(designs) != content_key(self._designs):
-            self._begin(designs)
+        """Prepare for the rows of a run; rows of these designs that are shown, or in the folder, stay."""
+        is_shown = folder == self._folder and content_key(designs) == content_key(self._designs)
         self._folder = folder
+        if not is_shown:
+            self._begin(designs)
+            self.load()
 
     def add(self, rows: Sequence[Mapping[str, Any]]) -> None:
         """Add rows as a run prints them."""

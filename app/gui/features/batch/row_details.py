@@ -8,6 +8,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QPixmap
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QVBoxLayout
 
+from app.batch.stored_rows import written_file
 from app.gui.theme.stylesheet import label, set_tag
 from app.gui.widgets.basic import ElidedLabel, button, sentence
 from app.gui.widgets.tooltip import set_tip
@@ -58,8 +59,11 @@ class RowDetails(QFrame):
         set_tip(self.remarks, row.remarks if row is not None else "")
         self.report.setVisible(row is not None and bool(row.report))
         picture = QPixmap()
-        if row is not None and folder is not None and row.picture:
-            picture.load(str(folder / row.picture))
+        file = (
+            written_file(folder, "picture", row.picture) if row is not None and folder is not None else None
+        )
+        if file is not None:
+            picture.load(str(file))
         if not picture.isNull():
             ratio = self.devicePixelRatioF()
             picture = picture.scaled(

@@ -102,7 +102,7 @@ class BatchRun(QObject):
         self.is_stopping = True
         if os.name == "nt":
             process.kill()  # a process without a console hears of no Ctrl+C; rows that are written stay
-        else:
+        elif process.processId() > 0:  # 0, of one that has just ended, would be this program too
             os.kill(process.processId(), signal.SIGINT)
         self.changed.emit()
 

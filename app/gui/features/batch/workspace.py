@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QObject, Qt, Signal
 
 from app.batch.batch_design import BatchDesign
+from app.batch.design_file import other_results_error
 from app.batch.extra import missing_error, missing_packages
 from app.batch.inputs import list_scans
 from app.batch.one_body import design_on_body
 from app.batch.schema import PAGE
-from app.batch.stored_rows import has_results, scan_file
+from app.batch.stored_rows import has_results, scan_file, written_file
 from app.gui.features.batch.designs import STORED, DesignChoice
 from app.gui.features.batch.dialog import BatchDialog
 from app.gui.features.batch.results import BatchResults
@@ -200,10 +201,10 @@ class BatchWorkspace(QObject):
             return
         dialog.notices.clear()
         if self.results.is_of_other(setup.out, designs):
-            folder = Message("{folder} holds the results of another design.", folder=str(setup.out))
+            problem = other_results_error(setup.out).message
             actions = ((tr("Use new folder"), self.use_new_folder),)
             dialog.notices.show_notice(
-                "bad", folder, Message("Choose another folder."), actions, lasting=True
+                "bad", problem, Message("Choose another folder."), actions, lasting=True
             )
             return
         self.results.begin(setup.out, designs)
@@ -318,9 +319,9 @@ class BatchWorkspace(QObject):
     def _open_report(self) -> None:
         row = self.dialog.table.current
         if row is not None and self._out is not None and row.report:
-            report = self._out / row.report
-            if not (report.is_file() and open_outside(report)):
-                self._inform(tr("The report could not be opened."), str(report))
+            report = written_file(self._out, "report", row.report)
+            if report is None or not (report.is_file() and open_outside(report)):
+                self._inform(tr("The report could not be opened."), row.report)
 
     def _show_folder(self) -> None:
         if self._out is not None:
