@@ -130,11 +130,8 @@ def results(client: Client, work: Work, bodies: Iterator[Mapping[str, Any]]) -> 
     while tries:
         future, rows = next(running)
         task, tried = tries.pop(future)
-        if future.status in ("lost", "cancelled"):
-            raise _lost_scheduler()
         if future.status != "finished":
-            if not isinstance(error := future.exception(), KilledWorker):
-                raise error
+            _check_workers_lost(future)
             if tried + 1 < TRIES:
                 submit(task, tried + 1)
                 continue
@@ -144,6 +141,14 @@ def results(client: Client, work: Work, bodies: Iterator[Mapping[str, Any]]) -> 
         future.release()
         refill()
         yield rows
+
+
+def _check_workers_lost(future: Future) -> None:
+    """Raise what ended a task, unless all of its workers were lost."""
+    if future.status in ("lost", "cancelled"):
+        raise _lost_scheduler()
+    if not isinstance(error := future.exception(), KilledWorker):
+        raise error
 
 
 def _lost_scheduler() -> UserError:
