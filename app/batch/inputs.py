@@ -109,7 +109,10 @@ def _is_scan(name: str) -> bool:
 def _listed(path: Path) -> Iterator[str]:
     """Yield the scans of a list: its column "scan", or the first one; paths are relative to the list."""
     try:
-        rows = list(csv.reader(read_text(path, _LARGEST_LIST, "utf-8-sig").splitlines()))
+        lines = read_text(path, _LARGEST_LIST, "utf-8-sig").splitlines()
+        # Spreadsheets separate with semicolons where numbers have commas.
+        parts = [part.strip(' "').lower() for part in lines[0].split(";")] if lines else []
+        rows = list(csv.reader(lines, delimiter=";" if len(parts) > 1 and "scan" in parts else ","))
     except (OSError, ValueError, csv.Error) as problem:
         raise UserError(
             Message("The list {file} cannot be read: {why}.", file=str(path), why=reason_of(problem)),

@@ -45,7 +45,14 @@ def test_patterns_and_missing_files(tmp_path: Path) -> None:
         list_scans([str(tmp_path / "none*.ply")])
 
 
-@pytest.mark.parametrize("text", ["\ufeffname,Scan\nAnna,s/a.ply\n,\nBea,s/b.ply\n", "s/a.ply,1\ns/b.ply,2"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "\ufeffname,Scan\nAnna,s/a.ply\n,\nBea,s/b.ply\n",
+        'name;"Scan"\nAnna;s/a.ply\n;\n"B, Bea";s/b.ply\n',
+        "s/a.ply,1\ns/b.ply,2",
+    ],
+)
 def test_lists_name_scans_relative_to_them(tmp_path: Path, text: str) -> None:
     (tmp_path / "list.csv").write_text(text, "utf-8")
     assert list_scans([str(tmp_path / "list.csv")]) == [str(tmp_path / "s" / f"{name}.ply") for name in "ab"]
