@@ -6,14 +6,18 @@ import argparse
 import json
 import math
 import os
+import signal
 import sys
+import threading
 import time
 from argparse import ArgumentParser, Namespace
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from datetime import timedelta
 from itertools import count
 from pathlib import Path
+from types import FrameType
 from typing import TYPE_CHECKING, Any
 
 from app.batch.batch_design import BatchDesign, batch_design, preset_design
@@ -128,15 +132,44 @@ def _run(options: Namespace, scans: list[str], store: ResultStore, progress: Pro
     pending = pending_bodies(scans, store, progress.skip, ship=options.ship, retry=options.retry)
     interrupted = True
     try:
-        for rows in run_batch(run, pending):
-            store.add(rows)
-            progress.add(rows)
+        with noticed_interrupts() as check:
+            for rows in run_batch(run, pending):
+                store.add(rows)
+                progress.add(rows)
+                check()
         interrupted = False
     finally:
         order = [printable_path(scan) for scan in scans]
         summary = store.finish(order, progress.seconds, interrupted=interrupted)
         progress.end(summary, options.out)
     return ALL_DONE if summary["rows"] == summary["states"][DONE] else NOT_CONVERGED
+
+
+@contextmanager
+def noticed_interrupts() -> Iterator[Callable[[], None]]:
+    """Yield a check that raises KeyboardInterrupt if Ctrl+C was pressed and the exception was lost.
+
+    Python drops what is raised in a finalizer, and Dask has many.
+    """
+    came = False
+
+    def notice(number: int, frame: FrameType | None) -> None:
+        nonlocal came
+        came = True
+        raise KeyboardInterrupt
+
+    def check() -> None:
+        if came:
+            raise KeyboardInterrupt
+
+    if threading.current_thread() is not threading.main_thread():
+        yield check  # signals are for the main thread
+        return
+    former = signal.signal(signal.SIGINT, notice)
+    try:
+        yield check
+    finally:
+        signal.signal(signal.SIGINT, former)
 
 
 def _files(options: Namespace) -> dict[str, str]:

@@ -20,6 +20,7 @@ from batch_tools import csv_rows, lasting, parquet_rows, run_batch, start_batch,
 from damaged_files import damaged_file
 from pdf_tools import Pdf
 
+from app.cli.commands.batch import noticed_interrupts
 from app.cli.main import BAD_INPUT, INTERRUPTED, main
 from app.cli.output import DONE, NOT_CONVERGED
 from core.document.design import Design, ScanSource
@@ -193,10 +194,27 @@ def test_kills_lose_no_body_and_double_none(person: Path, mannequin: Path, tmp_p
     assert summary(out)["states"]["done"] == count
 
 
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+def test_an_interrupt_that_a_finalizer_drops_is_not_lost() -> None:
+    class Dropping:
+        def __del__(self) -> None:
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(0)  # here the exception is raised, and ignored
+
+    former = signal.getsignal(signal.SIGINT)
+    with noticed_interrupts() as check:
+        check()
+        each = Dropping()
+        del each
+        with pytest.raises(KeyboardInterrupt):
+            check()
+    assert signal.getsignal(signal.SIGINT) is former
+
+
 def test_an_interrupted_run_ends_with_what_is_there(person: Path, tmp_path: Path) -> None:
     scans, out = tmp_path / "scans", tmp_path / "out"
     scans.mkdir()
-    for number in range(12):
+    for number in range(100):
         (scans / f"{number:02}.ply").write_bytes(person.read_bytes() + bytes([number]))
     command = started(out, 1, scans, *LINES, "--workers", "1")
     children = psutil.Process(command.pid).children(recursive=True)
@@ -206,7 +224,7 @@ def test_an_interrupted_run_ends_with_what_is_there(person: Path, tmp_path: Path
     assert b"Traceback" not in errors
     assert b"written to" in printed
     assert summary(out)["interrupted"]
-    assert len(parquet_rows(out)) == len(csv_rows(out)) == summary(out)["rows"] < 12
+    assert len(parquet_rows(out)) == len(csv_rows(out)) == summary(out)["rows"] < 100
     assert not psutil.wait_procs(children, timeout=20)[1], "no process is left"
 
 
