@@ -14,6 +14,7 @@ from PIL import Image
 from app.batch.one_body import Row
 from app.batch.schema import FOLDERS
 from app.rendering.thumbnail import render_thumbnail
+from core.document.storage.project_file import safe_name
 from core.errors import UserError
 from core.export.mesh import write_mesh
 from core.files.atomic_write import atomic_path
@@ -90,7 +91,6 @@ def unpacked_files(row: Row, out: Path) -> Row:
 
 
 def _stem(scan: str, variant: str) -> str:
-    """Return a name that every system takes, another one for each scan and variant."""
-    called = hashlib.sha256(f"{scan}\n{variant}".encode()).hexdigest()[:8]
-    letters = "".join(each if each.isalnum() else "_" for each in Path(scan).stem)[:40]
-    return f"{letters}-{called}"
+    """Return a file name that is valid on every system and differs for each scan and variant."""
+    digest = hashlib.sha256(f"{scan}\n{variant}".encode()).hexdigest()[:8]
+    return f"{safe_name(Path(scan).stem)[:40].strip()}-{digest}"

@@ -7,8 +7,6 @@ from math import isnan
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from app.batch.compared_designs import LIFT, PRESSURE, RESOLUTIONS, VERDICTS, DesignComparison
 from core import __version__
 from core.analysis.comparison.paired import PairedDifference
@@ -41,19 +39,18 @@ def _write(path: Path, columns: Any, rows: Any) -> None:
 
 def outcome(found: DesignComparison, at: int) -> str:
     """Return in one word how lift and pressure of a body change, nothing if they are not known."""
-    change = found.tradeoff
-    words = {"better": change.better, "worse": change.worse, "same": change.same, "mixed": change.mixed}
-    return next((word for word, bodies in words.items() if bodies[at]), "")
+    return next((word for word, bodies in found.tradeoff.outcomes.items() if bodies[at]), "")
 
 
 def _body(found: DesignComparison, at: int) -> list[object]:
     row: list[object] = [found.scans[at], *found.verdicts[at], outcome(found, at)]
     for first, second in found.values.values():
-        row += [_known(each) for each in (first[at], second[at], second[at] - first[at])]
+        row += [known(each) for each in (first[at], second[at], second[at] - first[at])]
     return row
 
 
-def _known(value: np.floating[Any] | float) -> float | None:
+def known(value: float) -> float | None:
+    """Return a value, None for not a number."""
     return None if isnan(value) else float(value)
 
 
@@ -77,14 +74,7 @@ def summary_of(found: DesignComparison) -> dict[str, Any]:
         "lift_and_pressure": {
             "bodies": change.count,
             "more_lift_at_no_more_pressure": change.gains_at_no_cost,
-            **{
-                word: int(bodies.sum())
-                for word, bodies in zip(
-                    ("better", "worse", "same", "mixed"),
-                    (change.better, change.worse, change.same, change.mixed),
-                    strict=True,
-                )
-            },
+            **{word: int(bodies.sum()) for word, bodies in change.outcomes.items()},
             "counts": change.counts.tolist(),
         },
         "verdicts": {"order": list(VERDICTS), "counts": found.verdict_counts.tolist()},

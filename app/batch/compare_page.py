@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from app.batch.compare_files import outcome
+from app.batch.compare_files import known, outcome
 from app.batch.compared_designs import LIFT, PRESSURE, RESOLUTIONS, VERDICTS, DesignComparison
 from app.batch.page_parts import Cell, Row, counted, folded, number, page, paragraph, percent, table
 from app.batch.svg_plots import Point, Series, histogram, legend, number_axis, scatter
@@ -15,14 +15,13 @@ MOST_ROWS = 2000
 """Bodies that the page lists; compare.csv lists all."""
 
 MOST_NAMES = 30
-OUTCOMES = ("better", "worse", "same", "mixed")
 _DIGITS = {"kPa": 2, "%": 2}
 _LOOKS = {"better": "good", "worse": "bad"}
 
 
 def compare_page(found: DesignComparison) -> str:
     """Return the page of a comparison."""
-    points = {word: [at for at in range(len(found.scans)) if outcome(found, at) == word] for word in OUTCOMES}
+    points = {word: np.flatnonzero(rows).tolist() for word, rows in found.tradeoff.outcomes.items()}
     parts = [
         *(paragraph(each) for each in sentences(found)),
         paragraph(_NOTE, note=True),
@@ -66,9 +65,7 @@ def sentences(found: DesignComparison) -> Iterator[str]:
     gains, whole = change.gains_at_no_cost, change.count
     share = percent(gains / whole)
     yield f"The second design lifts more at no more pressure on {gains} of {whole} bodies ({share})."
-    better, worse, same, mixed = (
-        int(each.sum()) for each in (change.better, change.worse, change.same, change.mixed)
-    )
+    better, worse, same, mixed = (int(rows.sum()) for rows in change.outcomes.values())
     yield (
         f"It is better on {better}, worse on {worse} and equal on {same}; on {mixed} both lift and pressure "
         "are more, or both are less."
@@ -135,13 +132,9 @@ def _body_table(found: DesignComparison) -> str:
     rows: list[Row] = []
     for at in order[:MOST_ROWS]:
         word = outcome(found, at)
-        cells = [number(_known(lift[at]), 1, signed=True), number(_known(pressure[at]), 2, signed=True)]
+        cells = [number(known(lift[at]), 1, signed=True), number(known(pressure[at]), 2, signed=True)]
         rows.append([found.scans[at], *cells, Cell(word, _LOOKS.get(word, "")), *found.verdicts[at]])
     return table(("scan", "lift, mm", "pressure, kPa", "", "verdict, first", "verdict, second"), rows)
-
-
-def _known(value: float) -> float | None:
-    return None if np.isnan(value) else float(value)
 
 
 def _unmatched(found: DesignComparison) -> Iterator[str]:

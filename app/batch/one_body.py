@@ -21,14 +21,13 @@ from core.garment.assessment import assess_with
 from core.garment.cut_list import CutList, cut_list_of
 from core.garment.line_requests import with_lines_and_elastics
 from core.garment.pressure_list import PressureList, pressure_list_of
-from core.garment.tension import divergence_error
 from core.landmarks.warnings import collect_warnings
 from core.measurements.sizes import GIRTHS_OF_SIZES, built_in, size
 from core.measurements.table import Measures, before_after, measures
 from core.messages import Message
 from core.pattern.garment import pattern_of
 from core.pipeline.build import Stages, build
-from core.pipeline.solve import NoEquilibriumError, Solution, solve
+from core.pipeline.solve import Solution, solve_valid
 from core.pipeline.warnings import immovable_lines, shape_warnings
 
 Row = dict[str, Any]
@@ -55,9 +54,9 @@ def compute_row(design: BatchDesign, scan: Path, previous: Stages | None = None)
     row: Row = {"state": DONE}
     try:
         stages = build(design.on_scan(scan), previous)
-        placed, row = _with_lengths(stages, design, row)
-        solution = _solved(placed)
-        row |= _values(solution)
+        placed, miss = _with_lengths(stages, design)
+        solution = solve_valid(placed)
+        row |= {"target_miss_mm": miss, **_values(solution)}
     except UserError as problem:
         row |= {"state": REFUSED, "message": str(problem)}
         if stages is not None and solution is None:
@@ -73,34 +72,25 @@ def design_on_body(design: BatchDesign, scan: Path) -> Design:
     """
     placed = design.on_scan(scan)
     if design.lines or design.elastics or design.targets:
-        placed = _with_lengths(build(placed), design, {})[0].design
+        placed = _with_lengths(build(placed), design)[0].design
     return placed
 
 
-def _with_lengths(stages: Stages, design: BatchDesign, row: Row) -> tuple[Stages, Row]:
-    """Return the stages with the lines, elastics and targets of the design. Raises UserError."""
+def _with_lengths(stages: Stages, design: BatchDesign) -> tuple[Stages, float | None]:
+    """Return the stages with the lines, elastics and targets of the design, and the largest deviation [mm].
+
+    It is None without targets. Raises UserError.
+    """
     lengths = with_lines_and_elastics(stages, design.lines, [])
     placed = build(with_elastics(lengths.design, design.elastics), lengths) if design.elastics else lengths
     if not design.targets:
-        return placed, row
+        return placed, None
     changes = changes_of(design.targets)
     goals = tuple(
         absolute(placed, goal) if goal.name in changes else goal for goal in goals_of(design.targets)
     )
     reply = LineSelection(placed).solve(goals)
-    return build(reply.design, placed), {**row, "target_miss_mm": float(reply.miss)}
-
-
-def _solved(stages: Stages) -> Solution:
-    """Solve a design as ``busk solve`` does. Raises LineError if there is no valid shape."""
-    solution, design = solve(stages), stages.design
-    motion = solution.verdict.motion
-    lost = ("diverging", "settling") if design.volume == "exact" else ("diverging",)
-    if motion in lost and design.line_hold == "held":
-        raise NoEquilibriumError(design)
-    if motion == "diverging":
-        raise divergence_error()
-    return solution
+    return build(reply.design, placed), float(reply.miss)
 
 
 def _values(solution: Solution) -> Row:

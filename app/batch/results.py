@@ -14,7 +14,7 @@ import numpy as np
 from app.batch.batch_design import SCHEMA_VERSION
 from app.batch.design_file import damaged_error, other_version_error
 from app.batch.extra import missing_error
-from app.batch.schema import DESIGN, DONE, TABLE
+from app.batch.schema import DESIGN, DONE
 from core.errors import UserError, reason_of
 from core.geometry.mesh import Floats, Indices
 from core.messages import Message
@@ -111,14 +111,14 @@ def _read_table(folder: Path) -> tuple[dict[str, Any], dict[str, str]]:
     """Return columns by name, and the units of those that are numbers. Raises UserError."""
     try:
         import pyarrow as pa  # noqa: PLC0415 (an extra)
-        import pyarrow.parquet as pq  # noqa: PLC0415
+
+        from app.batch.parts import part_files, read_part  # noqa: PLC0415
     except ImportError as missing:
         raise missing_error(str(missing)) from missing
+    tables = [read_part(part) for part in part_files(folder)]
     try:
-        parts = sorted((folder / TABLE).glob("part-*.parquet"))
-        tables = [pq.ParquetFile(part).read() for part in parts]
         table = pa.concat_tables(tables) if tables else None
-    except (OSError, ValueError, pa.ArrowException) as problem:
+    except pa.ArrowException as problem:  # parts of different runs
         raise damaged_error(folder, " ".join(str(problem).split()).rstrip(".")) from problem
     if table is None or not table.num_rows:
         raise UserError(

@@ -18,9 +18,10 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from app.batch.batch_design import SCHEMA_VERSION, BatchDesign, content_key
-from app.batch.design_file import damaged_error, other_results_error, stored_key, write_designs
+from app.batch.design_file import other_results_error, stored_key, write_designs
 from app.batch.index_page import index_page
 from app.batch.one_body import Row
+from app.batch.parts import part_files, read_part
 from app.batch.schema import (
     CRASHED,
     CSV,
@@ -90,12 +91,12 @@ class ResultStore:
         self._waiting: list[Row] = []
         self._stored: dict[tuple[str, str], _Stored] = {}
         self._by_content: dict[tuple[str, str], list[str]] = {}
-        for part in self._parts():
-            for row in self._read(part, _KEY_COLUMNS).to_pylist():
+        for part in part_files(self.folder):
+            for row in read_part(part, _KEY_COLUMNS).to_pylist():
                 self._note(row, part)
-        numbers = (part.stem.partition("-")[2] for part in self._parts())
+        numbers = (part.stem.partition("-")[2] for part in part_files(self.folder))
         self._next = max((int(each) for each in numbers if each.isdecimal()), default=-1) + 1
-        self._write_csv(None)
+        self._write_csv(self.table())
 
     @property
     def is_empty(self) -> bool:
@@ -149,8 +150,9 @@ class ResultStore:
     def finish(self, order: Sequence[str], seconds: float, *, interrupted: bool) -> dict[str, Any]:
         """Write what waits, the CSV file in the ``order`` of scans, the page, and the summary; return it."""
         self.flush()
-        self._write_csv(order)
-        write_text(self.folder / PAGE, index_page(self.table(), self.designs))
+        table = self.table()
+        self._write_csv(table.take(pa.array(self._sorted(table, order), pa.int64())))
+        write_text(self.folder / PAGE, index_page(table, self.designs))
         summary = {
             "states": {state: self.states[state] for state in STATES},
             "rows": len(self._stored),
@@ -169,17 +171,8 @@ class ResultStore:
 
     def table(self) -> pa.Table:
         """Return all rows that are written, in the order in which they were computed."""
-        tables = [self._read(part) for part in self._parts()]
+        tables = [read_part(part) for part in part_files(self.folder)]
         return pa.concat_tables(tables or [_arrow_schema(self.columns).empty_table()])
-
-    def _parts(self) -> list[Path]:
-        return sorted(self._table.glob("part-*.parquet"))
-
-    def _read(self, part: Path, columns: Sequence[str] | None = None) -> pa.Table:
-        try:
-            return pq.read_table(part, columns=columns and list(columns))
-        except (OSError, ValueError, pa.ArrowException) as problem:
-            raise damaged_error(self.folder, " ".join(str(problem).split()).rstrip(".")) from problem
 
     def _note(self, row: Row, part: Path | None) -> None:
         scan, digest, variant = row["scan"], row["scan_sha256"] or "", row["variant"]
@@ -190,7 +183,7 @@ class ResultStore:
         """Remove former rows of these scans and variants, whose files have changed or are tried again."""
         parts = {self._stored[key].part for key in keys if key in self._stored}
         for part in sorted(each for each in parts if each is not None):
-            rows = self._read(part).to_pylist()
+            rows = read_part(part).to_pylist()
             kept = [row for row in rows if (row["scan"], row["variant"]) not in keys]
             if kept:
                 self._write_part(part, kept)
@@ -214,11 +207,7 @@ class ResultStore:
             writer.writerow([each if isinstance(each, float) else cell(each) for each in values])
         return text.getvalue()
 
-    def _write_csv(self, order: Sequence[str] | None) -> None:
-        """Write the CSV file from the parts, in an ``order`` of scans; other scans come last."""
-        table = self.table()
-        if order is not None:
-            table = table.take(pa.array(self._sorted(table, order), pa.int64()))
+    def _write_csv(self, table: pa.Table) -> None:
         with (
             atomic_path(self._csv) as partial,
             open(partial, "w", newline="", encoding=ENCODING) as file,
@@ -228,7 +217,7 @@ class ResultStore:
                 file.write(self._csv_text(batch.to_pylist()))
 
     def _sorted(self, table: pa.Table, order: Sequence[str]) -> list[int]:
-        """Return the places of rows in the order of scans, then of variants."""
+        """Return the places of rows in the ``order`` of scans, other scans last, then of variants."""
         at = {scan: number for number, scan in enumerate(order)}
         names = {each.name: number for number, each in enumerate(self.designs)}
         scans, variants = (table.column(name).to_pylist() for name in ("scan", "variant"))
@@ -242,7 +231,7 @@ class ResultStore:
 
         Its designs come last: while they are there, the folder is that of a run.
         """
-        for part in self._parts():
+        for part in part_files(self.folder):
             part.unlink()
         for name in (CSV, SUMMARY, PAGE, DESIGN):
             (self.folder / name).unlink(missing_ok=True)
@@ -301,7 +290,7 @@ def _check_no_others(folder: Path) -> None:
 def _former_key(folder: Path) -> str | None:
     """Return the key of the designs whose results a folder holds, None without any."""
     key = stored_key(folder)
-    return "" if key is None and any((folder / TABLE).glob("part-*.parquet")) else key
+    return "" if key is None and any(part_files(folder)) else key
 
 
 def _arrow_schema(columns: Sequence[Column]) -> pa.Schema:

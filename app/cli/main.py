@@ -41,7 +41,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _run_command(command: str, words: Sequence[str]) -> int:
     options = command_options(command, words)
-    # Loaded for a command alone: the version and the help are there before them.
+    # Only a command needs them: version and help do not wait for them.
     import scipy.linalg  # noqa: F401, PLC0415  its BLAS must be there to be held to one thread
     from threadpoolctl import threadpool_limits  # noqa: PLC0415
 

@@ -16,10 +16,9 @@ from core.garment.elastic_library import library
 from core.garment.elastic_options import KEEP_CUT, KEEP_FIT, elastic_option, outcome_of
 from core.garment.line_requests import apply_elastics, apply_lines
 from core.garment.match_shape import match_lengths
-from core.garment.tension import divergence_error
 from core.messages import Message, join
 from core.pipeline.build import Stages, build
-from core.pipeline.solve import NoEquilibriumError, Solution, solve
+from core.pipeline.solve import Solution, solve_valid
 from core.pipeline.warnings import shape_warnings
 
 
@@ -53,14 +52,6 @@ class SolvedDesign:
 def is_converged(solution: Solution) -> bool:
     """Return whether the solver has converged to a shape that is not folded."""
     return solution.verdict.motion == "settled" and solution.verdict.state != "folded"
-
-
-def solve_valid(stages: Stages) -> Solution:
-    """Solve the design of ``stages``. Raises LineError if the solver diverged."""
-    solution = solve(stages)
-    if solution.verdict.motion == "diverging":
-        raise NoEquilibriumError(stages.design) if stages.design.line_hold == "held" else divergence_error()
-    return solution
 
 
 def solve_design(

@@ -270,7 +270,7 @@ def duration_text(seconds: float) -> str:
     return tr("{seconds} s").format(seconds=whole)
 
 
-def told_error(event: Mapping[str, Any]) -> tuple[str, str]:
+def error_text(event: Mapping[str, Any]) -> tuple[str, str]:
     """Return message and hint of an error of the command, in the language in use."""
     texts = [sentence_text(text, values) for text, values in event.get("sentences", ())]
     first, *rest = texts or [str(event.get("message", ""))]

@@ -19,7 +19,7 @@ class PieceRow:
 
     ``strain_percent`` is that of the worn piece before ease on 95 % of its area, at most ``limit_percent``
     where its cloth takes it up. ``reason`` says why it cannot be sewn as it is, empty if it ``fits``;
-    it ``is_overstrained`` where that is its strain. ``note`` says what to look at, ``stretch_percent`` is its
+    it ``is_overstrained`` where that is its strain. ``note`` is a remark on it, ``stretch_percent`` its
     mean stretch when worn, with its ease, across and down.
     """
 

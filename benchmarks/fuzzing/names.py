@@ -17,7 +17,7 @@ from typing import Any
 import ezdxf
 
 from app.cli.commands.cut import FORMS, Cut
-from app.cli.solved_design import SolvedDesign, solve_valid
+from app.cli.solved_design import SolvedDesign
 from app.presenters.export import ExportOptions, ExportSource
 from app.presenters.export_preview import prepare_export
 from core.document.custom_measures import CustomMeasurement
@@ -28,6 +28,7 @@ from core.document.lines import CustomLine, LineSettings
 from core.document.storage.project_file import open_project, read_scan_file, save_project
 from core.garment.cut_list import cut_list
 from core.pipeline.build import Stages, build
+from core.pipeline.solve import solve_valid
 from core.progress import in_one_go, quiet
 
 BODY = Path(__file__).parents[2] / "resources" / "samples" / "person.ply"

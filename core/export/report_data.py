@@ -15,7 +15,6 @@ from core.garment.assessment import Assessment, assess_with
 from core.garment.cut_list import CutList, cut_list_of
 from core.garment.pressure import LEFT_OUT
 from core.garment.pressure_list import PressureRow, pressure_list_of
-from core.garment.tension import divergence_error
 from core.geometry.mesh import Floats, Mesh, Points
 from core.geometry.planar_curves import AXES, Curve, Plane, Slicer, nearest
 from core.landmarks.warnings import collect_warnings
@@ -27,6 +26,7 @@ from core.mechanics.convergence import SOUND
 from core.mechanics.iteration import Observables, Record
 from core.messages import EMPTY, Message, plain
 from core.pipeline.build import Stages
+from core.pipeline.solve import divergence_error
 from core.pipeline.warnings import ShownState, controlled_volume, immovable_lines, shape_warnings, warnings
 from core.progress import Progress, quiet
 

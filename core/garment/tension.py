@@ -8,13 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.document.elastic import Elastic
-from core.errors import LineError
 from core.geometry.mesh import Floats, Points
 from core.mechanics.force_units import newtons_per_unit
 from core.mechanics.newton import SlidingSurface
 from core.mechanics.potential import Potential
-from core.messages import Message
 from core.pipeline.model_stages import line_targets
+from core.pipeline.solve import divergence_error
 from core.pipeline.stages import RegionStages
 
 SLACK = 0.05
@@ -57,14 +56,6 @@ def mean_elongation(
     if stages.tissue is None or tension is None or tension.mean <= 0.0:
         return whole
     return elastic.elongation(tension.mean)
-
-
-def divergence_error() -> LineError:
-    """Return what to say where the points are those of no body any more."""
-    return LineError(
-        Message("The solver diverged: no shape is available for measurements or cutting."),
-        Message("Make the lines longer or softer."),
-    )
 
 
 def line_tensions(stages: RegionStages, control_points: Points) -> Mapping[str, LineTension]:

@@ -225,6 +225,31 @@ def solve(stages: Stages, turns: int | None = None, progress: Progress = quiet) 
     return Solution(stages, solved[0], lower, time.perf_counter() - start)
 
 
+def check_held_lines(solution: Solution) -> None:
+    """Raise NoEquilibriumError if lines that hold their lengths have no equilibrium."""
+    design, motion = solution.stages.design, solution.verdict.motion
+    lost = ("diverging", "settling") if design.volume == "exact" else ("diverging",)
+    if design.line_hold == "held" and motion in lost:
+        raise NoEquilibriumError(design)
+
+
+def solve_valid(stages: Stages) -> Solution:
+    """Solve the design of ``stages``. Raises LineError if there is no valid shape."""
+    solution = solve(stages)
+    check_held_lines(solution)
+    if solution.verdict.motion == "diverging":
+        raise divergence_error()
+    return solution
+
+
+def divergence_error() -> LineError:
+    """Return the error of a solution that is not a shape of the body."""
+    return LineError(
+        Message("The solver diverged: no shape is available for measurements or cutting."),
+        Message("Make the lines longer or softer."),
+    )
+
+
 def solve_region(stages: RegionStages, turns: int | None, progress: Progress = quiet) -> RegionSolution:
     """Solve one region of a design; see ``solve``. Raises Cancelled."""
     rest = record(stages.model, initial_state(stages.model), 0.0, stages.watch)

@@ -33,6 +33,7 @@ LIBRARIES = {
     "app.batch.index_page": {"numpy", "pyarrow"},
     "app.batch.results": {"numpy", "pyarrow"},
     "app.batch.store": {"pyarrow"},
+    "app.batch.parts": {"pyarrow"},
     "app.report": QT | {"numpy", "shapely"},
     "app.gui.theme": QT | {"PySide6.QtSvg"},
     "app.gui.widgets": QT | {"numpy"},

@@ -9,7 +9,7 @@ from pathlib import Path
 from app.cli.design import design_of
 from app.cli.options import add_lines, picture_size
 from app.cli.output import finish
-from app.cli.solved_design import is_converged, solve_valid
+from app.cli.solved_design import is_converged
 from app.presenters.assessment import assessment_lines
 from app.presenters.export import ExportOptions, ExportSource, exports
 from app.presenters.export_preview import check, prepare_export
@@ -19,6 +19,7 @@ from core.garment.assessment import assess
 from core.garment.line_requests import with_lines_and_elastics
 from core.messages import Message
 from core.pipeline.build import build
+from core.pipeline.solve import solve_valid
 from core.pipeline.warnings import shape_warnings
 from core.progress import in_one_go, quiet
 

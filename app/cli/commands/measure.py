@@ -10,7 +10,7 @@ from typing import Any
 from app.cli.design import design_of
 from app.cli.options import add_forms, add_scan, form_of
 from app.cli.output import finish, table_lines, write_output
-from app.cli.solved_design import is_converged, solve_valid
+from app.cli.solved_design import is_converged
 from app.presenters.assessment import assessment_lines
 from app.presenters.measurements import MeasureView, measured_views
 from core import __version__
@@ -24,6 +24,7 @@ from core.landmarks.warnings import collect_warnings
 from core.measurements.table import before_after, measure_rows, measures
 from core.messages import Message, plain
 from core.pipeline.build import build, detect_landmarks, read_body
+from core.pipeline.solve import solve_valid
 from core.pipeline.warnings import shape_warnings
 
 COLUMNS = (

@@ -18,7 +18,7 @@ from core.garment.assessment import assess
 from core.garment.wires import nearest_wires
 from core.landmarks.types import SIDES
 from core.landmarks.warnings import collect_warnings
-from core.pipeline.solve import NoEquilibriumError, Solution, solve
+from core.pipeline.solve import Solution, check_held_lines, solve
 from core.pipeline.warnings import immovable_lines, shape_warnings
 
 DIVERGED = (
@@ -46,16 +46,13 @@ def run(options: Namespace) -> int:
     """Solve the design and write it: nothing is written if it is refused. Raises UserError."""
     stages = stages_of(options)
     solution, design = solve(stages, options.iterations), stages.design
-    motion = solution.verdict.motion
-    lost = ("diverging", "settling") if design.volume == "exact" else ("diverging",)
-    if design.line_hold == "held" and motion in lost:
-        raise NoEquilibriumError(design)
+    check_held_lines(solution)
     out, assessment = make_folder(options.out), assess(solution)
     values = write_solution(solution, out, {"assessment": assessment.as_data()})
     text = [*assessment_lines(assessment, design), *_lines(values), _end(values, solution, out)]
     unclear = collect_warnings(stages.body, stages.landmarks)
     warnings = (*unclear, *immovable_lines(stages), *shape_warnings(solution))
-    diverged = [DIVERGED] * (motion == "diverging")
+    diverged = [DIVERGED] * (solution.verdict.motion == "diverging")
     return finish("\n".join(text), is_converged(solution), (*warnings, *diverged))
 
 

@@ -11,7 +11,7 @@ from typing import Any
 from app.cli.design import check_project_name, save_design, stages_of
 from app.cli.options import add_forms, add_lines, add_project_output, add_scan
 from app.cli.output import finish, table_lines
-from app.cli.solved_design import is_converged, solve_valid
+from app.cli.solved_design import is_converged
 from app.presenters.assessment import assessment_lines
 from app.presenters.symmetry import balance_result_texts, not_balanced_reason, split_titles, symmetry_view
 from app.presenters.target_shape import change_text, reasons
@@ -26,7 +26,7 @@ from core.garment.assessment import Assessment, assess
 from core.landmarks.warnings import edit_warnings
 from core.messages import Message, plain
 from core.pipeline.build import Stages, build
-from core.pipeline.solve import solve
+from core.pipeline.solve import solve, solve_valid
 from core.pipeline.warnings import shape_warnings
 
 TITLES = {

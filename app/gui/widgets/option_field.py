@@ -102,10 +102,10 @@ class MenuField(Field):
 class OptionCombo(QPushButton):
     """A button that opens a menu; one that ``elides`` its text may be narrower than it."""
 
-    def __init__(self, *, elides: bool = False) -> None:
+    def __init__(self, *, elides: Qt.TextElideMode = Qt.TextElideMode.ElideNone) -> None:
         super().__init__()
         self._elides = elides
-        if elides:
+        if elides != Qt.TextElideMode.ElideNone:
             self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
         self.setFont(font("body"))
         self.setProperty("kind", "pull")
@@ -119,13 +119,12 @@ class OptionCombo(QPushButton):
 
     def minimumSizeHint(self) -> QSize:
         hint = super().minimumSizeHint()
-        return QSize(min(hint.width(), _NARROWEST), hint.height()) if self._elides else hint
+        narrow = self._elides != Qt.TextElideMode.ElideNone
+        return QSize(min(hint.width(), _NARROWEST), hint.height()) if narrow else hint
 
     def initStyleOption(self, option: QStyleOptionButton) -> None:
         super().initStyleOption(option)
-        if self._elides:
-            room = self.width() - _BESIDE
-            option.text = self.fontMetrics().elidedText(self.text(), Qt.TextElideMode.ElideRight, room)
+        option.text = self.fontMetrics().elidedText(self.text(), self._elides, self.width() - _BESIDE)
 
     def paintEvent(self, event: QPaintEvent) -> None:
         super().paintEvent(event)

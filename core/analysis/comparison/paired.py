@@ -83,6 +83,11 @@ class Tradeoff:
     mixed: Flags
 
     @property
+    def outcomes(self) -> dict[str, Flags]:
+        """Return the bodies of each outcome by its name."""
+        return {"better": self.better, "worse": self.worse, "same": self.same, "mixed": self.mixed}
+
+    @property
     def count(self) -> int:
         """Return the number of bodies for which both are known."""
         return int(self.counts.sum())

@@ -47,7 +47,7 @@ class Coverage:
     ``least`` is a number below which no choice is enough: the number of sizes itself if it is the smallest.
     ``curve`` are the shares served by 1, 2, 3 ... sizes, each added to those before it. ``held_out`` is the
     share of bodies served by as many sizes chosen without them, None for fewer than 2 * FOLDS bodies.
-    ``sampled`` tells that the bodies are a sample of all.
+    ``sampled`` is whether the bodies are a sample of all.
     """
 
     share: float
@@ -98,7 +98,7 @@ def coverage(compared: ComparedBodies, share: float) -> Coverage | None:
 def greedy(serves: Flags, most: int | None = None) -> tuple[Indices, Indices]:
     """Return candidates (k,), each serving most bodies not yet served, and the bodies served (k,).
 
-    ``serves`` (n, n) tells which candidate, by row, serves which body, itself too. All bodies are served in
+    ``serves`` (n, n) is whether a candidate, by row, serves a body, itself too. All bodies are served in
     the end, or as many as ``most`` candidates serve.
     """
     left = np.ones(serves.shape[1], dtype=bool)

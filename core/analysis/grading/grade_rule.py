@@ -51,7 +51,7 @@ class GradeRule:
 class RuleFit:
     """Least squares of one measure (n,) on the sizes (n, 2) of the bodies for which it is known.
 
-    Where parts of the size cannot be told apart, the smallest coefficients that fit are used.
+    Where band and cup cannot be separated, the smallest coefficients that fit are used.
     """
 
     def __init__(self, values: Floats, sizes: Indices, base: SizeCode) -> None:

@@ -25,7 +25,7 @@ from core.progress import Progress
 if TYPE_CHECKING:
     from app.gui.context import AppContext
 
-_Loaded = tuple[list[BatchDesign], list[str], list[BatchRow]]
+_Loaded = tuple[list[BatchDesign], list[BatchRow]]
 
 
 class BatchResults(QObject):
@@ -61,7 +61,9 @@ class BatchResults(QObject):
         self._context.jobs.cancel(self._job)
         if folder is not None and has_results(folder):
             text = tr("Reading results…")
-            self._job = self._context.jobs.run(text, lambda told: _read(folder, told), self._take, self._fail)
+            self._job = self._context.jobs.run(
+                text, lambda progress: _read(folder, progress), self._take, self._fail
+            )
 
     def begin(self, folder: Path, designs: Sequence[BatchDesign]) -> None:
         """Prepare for the rows of a run; rows of these designs that are shown, or in the folder, stay."""
@@ -92,7 +94,7 @@ class BatchResults(QObject):
         self._model.begin(Cells(places, known), several=len(designs) > 1)
 
     def _take(self, loaded: object) -> None:
-        designs, _, rows = cast(_Loaded, loaded)
+        designs, rows = cast(_Loaded, loaded)
         running = bool(self._designs) and content_key(designs) == content_key(self._designs)
         if not running:
             self._begin(designs)
@@ -124,4 +126,4 @@ class BatchResults(QObject):
 def _read(folder: Path, progress: Progress) -> _Loaded:
     designs, rows = read_results(folder, progress)
     numbers = [each.name for each in columns_of(designs) if each.kind == NUMBER]
-    return designs, numbers, [batch_row(row, numbers) for row in rows]
+    return designs, [batch_row(row, numbers) for row in rows]

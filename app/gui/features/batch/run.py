@@ -18,7 +18,7 @@ from app.batch.batch_design import BatchDesign
 from app.batch.design_file import write_designs
 from app.batch.schema import DESIGN
 from app.i18n.catalog import language, tr
-from app.presenters.batch import told_error
+from app.presenters.batch import error_text
 
 _ALL_DONE, _SOME_LEFT, _BAD_INPUT = 0, 3, 2  # exit codes of the command
 _PATIENCE_MS = 30_000  # for a run to write its tables when the program ends
@@ -101,7 +101,7 @@ class BatchRun(QObject):
             return
         self.is_stopping = True
         if os.name == "nt":
-            process.kill()  # a process without a console hears of no Ctrl+C; rows that are written stay
+            process.kill()  # a process without a console gets no Ctrl+C; written rows stay
         elif process.processId() > 0:  # 0, of one that has just ended, would be this program too
             os.kill(process.processId(), signal.SIGINT)
         self.changed.emit()
@@ -128,9 +128,9 @@ class BatchRun(QObject):
             except ValueError:
                 continue  # of a library that prints
             if isinstance(event, dict):
-                self._hear(event)
+                self._handle(event)
 
-    def _hear(self, event: dict[str, Any]) -> None:
+    def _handle(self, event: dict[str, Any]) -> None:
         kind = event.get("event")
         if kind == "rows":
             self.rows_added.emit(event["rows"])
@@ -139,7 +139,7 @@ class BatchRun(QObject):
             self.rate, self.seconds_left = event["rows_per_s"], event["seconds_left"]
             self.changed.emit()
         elif kind == "error":
-            self.error = told_error(event)
+            self.error = error_text(event)
 
     def _fail_to_start(self, problem: QProcess.ProcessError) -> None:
         if problem == QProcess.ProcessError.FailedToStart and self._process is not None:

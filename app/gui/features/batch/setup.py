@@ -1,6 +1,5 @@
 """Setup of a batch run: scans, design with its variants, folder of results, processes."""
 
-# ruff: noqa: N802 - Qt names its events
 from __future__ import annotations
 
 import os
@@ -8,7 +7,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QCheckBox, QGridLayout, QHBoxLayout, QSizePolicy, QWidget
 
 from app.gui.session.app_folders import shown_folder
@@ -21,35 +19,24 @@ from app.presenters.batch import paths_text
 from app.presenters.model_options import Amount
 
 _MOST_PROCESSES = 1024
-_PATHS = Qt.TextElideMode.ElideMiddle
 
 
 class PullField(OptionCombo):
-    """A button that opens ``menu``; a text without room for all of it is shortened in the middle."""
+    """A button that opens ``menu``; a text without room for all of it is elided in the middle."""
 
     def __init__(self, title: str) -> None:
-        super().__init__()
+        super().__init__(elides=Qt.TextElideMode.ElideMiddle)
         self.menu_ = Menu(self)
-        self._whole = ""
         self.setAccessibleName(title)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         self.clicked.connect(lambda: pull_down(self.menu_, self))
 
     def show_text(self, text: str, tip: str = "") -> None:
-        """Show a text; the tooltip is what it has no room for."""
-        self._whole = text
+        """Show a text, and a tooltip with what it has no room for."""
+        self.setText(text)
         self.setAccessibleDescription(text)
         set_tip(self, tip)
-        self._shorten()
-
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        """Shorten the text to the new width."""
-        super().resizeEvent(event)
-        self._shorten()
-
-    def _shorten(self) -> None:
-        self.setText(self.fontMetrics().elidedText(self._whole, _PATHS, self.width() - 42))
 
 
 class BatchSetup(QWidget):

@@ -91,7 +91,7 @@ class PieceCard(_Card):
         super().__init__()
         self.reason, self.facts = sentence("", "secondary"), sentence("", "secondary")
         set_tag(self.reason, "tone", "warn")
-        self.cloth = OptionCombo(elides=True)
+        self.cloth = OptionCombo(elides=Qt.TextElideMode.ElideRight)
         self.cloth.setMinimumHeight(28)
         self._menu = Menu(self)
         self.cloth.clicked.connect(lambda: pull_down(self._menu, self.cloth))
