@@ -50,10 +50,7 @@ def shown_text(english: str) -> str:
 @lru_cache(maxsize=4096)
 def _shown(english: str, code: str, unit: str) -> str:
     if code == "en":
-        line, colon, rest = english.partition(": ")
-        title = line_title(line)
-        known = title.lower().replace("-", " ") == line.replace("-", " ")
-        return _with_unit(f"{title}{colon}{rest}" if known else english)
+        return _with_unit(english)
     parts, result = _BETWEEN.split(english), ""
     while parts:
         for count in range(len(parts), 0, -1):

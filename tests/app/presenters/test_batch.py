@@ -18,9 +18,9 @@ from app.presenters.batch import (
     batch_row,
     counts_text,
     duration_text,
+    error_text,
     paths_text,
     progress_text,
-    told_error,
 )
 from app.presenters.batch_distribution import PlottedColumn, distribution, plotted_columns
 
@@ -104,10 +104,10 @@ def test_an_error_of_the_command_is_shown_in_the_language_in_use() -> None:
             ["Choose another folder.", {}],
         ],
     }
-    assert told_error(event) == ("Another run is writing to out.", "Choose another folder.")
+    assert error_text(event) == ("Another run is writing to out.", "Choose another folder.")
     with using_language("ja"):
-        assert told_error(event)[1] == "別のフォルダーを選んでください。"
-    assert told_error({"message": "It failed."}) == ("It failed.", "")
+        assert error_text(event)[1] == "別のフォルダーを選んでください。"
+    assert error_text({"message": "It failed."}) == ("It failed.", "")
 
 
 def test_columns_have_titles_by_group() -> None:

@@ -29,7 +29,7 @@ def test_a_sentence_is_that_of_its_message(code: str, unit: str) -> None:
 
 
 def test_names_of_lines_are_translated() -> None:
-    assert shown_text(str(PRESSURE)) == "Strap left: contact pressure 10.4 kPa (78 mmHg)."
+    assert shown_text(str(PRESSURE)) == "strap left: contact pressure 10.4 kPa (78 mmHg)."
     with using_language("ja"):
         assert shown_text(str(PRESSURE)) == "ストラップ左：接触圧 10.4 kPa（78 mmHg）。"
 
@@ -55,3 +55,8 @@ def test_nearly_all_sentences_are_found_again() -> None:
                 wrong.append(english)
     assert count > 300
     assert len(wrong) < 0.05 * count, wrong
+
+
+def test_a_file_name_before_a_colon_stays() -> None:
+    refused = "customer 022.obj has too few points for a surface: 0. Scan again."
+    assert shown_text(refused) == refused

@@ -61,6 +61,7 @@ class BatchWorkspace(QObject):
         run, dialog, setup = self.run, self.dialog, self.dialog.setup
         run.changed.connect(self._show_run)
         run.rows_added.connect(self.results.add)
+        run.rows_added.connect(lambda _: self._follow())  # the folder of results is there now
         run.ended.connect(self._end)
         setup.folder_requested.connect(self._ask_folder)
         setup.files_requested.connect(self._ask_files)
